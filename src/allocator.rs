@@ -1,0 +1,108 @@
+//! The allocator that an object takes all its memory from: the system's, or the caller's callbacks.
+
+use core::ffi::c_void;
+use core::ptr::NonNull;
+use std::alloc::Layout;
+
+use crate::Error;
+
+/// Allocates `size` bytes at a multiple of `alignment`; null when there is no memory.
+pub type AlignedAlloc = unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void;
+/// Frees what [`AlignedAlloc`] gave.
+pub type AlignedFree = unsafe extern "C" fn(ptr: *mut c_void);
+
+/// Where an object's memory comes from.
+#[derive(Clone, Copy, Default)]
+pub struct Allocator {
+    callbacks: Option<(AlignedAlloc, AlignedFree)>,
+}
+
+impl Allocator {
+    /// The system's allocator.
+    pub const SYSTEM: Self = Self { callbacks: None };
+
+    /// The caller's own.
+    ///
+    /// # Safety
+    /// `alloc` returns null or memory of that size and alignment that is nobody else's until it is
+    /// passed to `free`; both may be called from any thread that uses the object.
+    pub const unsafe fn from_callbacks(alloc: AlignedAlloc, free: AlignedFree) -> Self {
+        Self { callbacks: Some((alloc, free)) }
+    }
+
+    /// The callbacks, where there are any.
+    pub const fn callbacks(&self) -> Option<(AlignedAlloc, AlignedFree)> {
+        self.callbacks
+    }
+
+    /// Memory for `layout` (not empty); its contents are undefined.
+    pub(crate) fn allocate(&self, layout: Layout) -> Result<NonNull<u8>, Error> {
+        assert!(layout.size() > 0);
+        let ptr = match self.callbacks {
+            // SAFETY: the layout is not empty, by the assertion above.
+            None => unsafe { std::alloc::alloc(layout) },
+            // SAFETY: whoever called `from_callbacks` vouched for the callback.
+            Some((alloc, _)) => unsafe { alloc(layout.align(), layout.size()).cast() },
+        };
+        let ptr = NonNull::new(ptr).ok_or(Error::OutOfMemory)?;
+        if ptr.as_ptr() as usize % layout.align() != 0 {
+            // A callback that ignores the alignment gets its memory back; every vector load relies on it.
+            // SAFETY: allocated just above with this layout.
+            unsafe { self.free(ptr, layout) };
+            return Err(Error::OutOfMemory);
+        }
+        Ok(ptr)
+    }
+
+    /// # Safety
+    /// `ptr` came from `allocate` of the same allocator with the same layout and was not freed yet.
+    pub(crate) unsafe fn free(&self, ptr: NonNull<u8>, layout: Layout) {
+        match self.callbacks {
+            // SAFETY: the caller's contract.
+            None => unsafe { std::alloc::dealloc(ptr.as_ptr(), layout) },
+            // SAFETY: the caller's contract, and `from_callbacks`'s.
+            Some((_, free)) => unsafe { free(ptr.as_ptr().cast()) },
+        }
+    }
+}
+
+/// An array of words at a multiple of 64 bytes, from an [`Allocator`].
+pub(crate) struct AlignedWords {
+    ptr: NonNull<u32>,
+    len: usize,
+    allocator: Allocator,
+}
+
+// SAFETY: it owns its memory as a Box does; `from_callbacks` asks for callbacks that any thread may call.
+unsafe impl Send for AlignedWords {}
+// SAFETY: shared access hands out the pointer only; who writes through it answers for exclusion.
+unsafe impl Sync for AlignedWords {}
+
+impl AlignedWords {
+    pub fn new(len: usize, allocator: Allocator) -> Result<Self, Error> {
+        let ptr = allocator.allocate(Self::layout(len)?)?.cast();
+        Ok(Self { ptr, len, allocator })
+    }
+
+    fn layout(len: usize) -> Result<Layout, Error> {
+        let bytes = len.checked_mul(4).ok_or(Error::OutOfMemory)?;
+        Layout::from_size_align(bytes.max(64), 64).map_err(|_| Error::OutOfMemory)
+    }
+
+    pub fn as_ptr(&self) -> *mut u32 {
+        self.ptr.as_ptr()
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+}
+
+impl Drop for AlignedWords {
+    fn drop(&mut self) {
+        if let Ok(layout) = Self::layout(self.len) {
+            // SAFETY: allocated in `new` with the same layout, freed here once.
+            unsafe { self.allocator.free(self.ptr.cast(), layout) }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Triangle lists: what `bin_triangles` fills and `render_trilist` draws.
+
+use core::marker::PhantomData;
+
+/// Floats that a binned triangle takes: x, y in 1/256 pixel and 1/w, of three vertices.
+pub(crate) const FLOATS_PER_TRIANGLE: usize = 9;
+
+/// A list of projected triangles in memory that the caller lends. The same struct as C's `MOC_TriList`.
+#[repr(C)]
+pub struct TriList<'a> {
+    pub(crate) capacity: u32,
+    pub(crate) len: u32,
+    pub(crate) data: *mut f32,
+    lent: PhantomData<&'a mut [f32]>,
+}
+
+// SAFETY: it is a unique borrow of a slice of floats in another form.
+unsafe impl Send for TriList<'_> {}
+// SAFETY: shared access only reads.
+unsafe impl Sync for TriList<'_> {}
+
+impl<'a> TriList<'a> {
+    /// An empty list that stores up to `storage.len() / 9` triangles.
+    pub fn new(storage: &'a mut [f32]) -> Self {
+        let capacity = (storage.len() / FLOATS_PER_TRIANGLE).min(u32::MAX as usize) as u32;
+        Self { capacity, len: 0, data: storage.as_mut_ptr(), lent: PhantomData }
+    }
+
+    /// How many triangles it can hold.
+    pub fn capacity(&self) -> usize {
+        self.capacity as usize
+    }
+
+    /// How many it holds.
+    pub fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// Does it hold none?
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Forgets the triangles, keeps the storage.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Appends a triangle; false when the list is full.
+    #[inline]
+    pub(crate) fn push(&mut self, triangle: &[f32; FLOATS_PER_TRIANGLE]) -> bool {
+        if self.len >= self.capacity || self.data.is_null() {
+            return false;
+        }
+        // SAFETY: `len < capacity`, and `data` holds `capacity` triangles: by `new` for a list made in
+        // Rust, by the contract of the C functions for one made there. Written unaligned, as C may align
+        // it to less than it should.
+        unsafe {
+            self.data.add(self.len as usize * FLOATS_PER_TRIANGLE).cast::<[f32; FLOATS_PER_TRIANGLE]>().write_unaligned(*triangle);
+        }
+        self.len += 1;
+        true
+    }
+}

@@ -1,0 +1,391 @@
+//! The object that engines hold: settings, a buffer, and the calls, each of which checks and hands on.
+
+use glam::Mat4;
+
+use crate::bins::TriList;
+use crate::buffer::Buffer;
+use crate::pipeline::{self, Camera, Mesh};
+use crate::rectangle;
+use crate::statistics::Counters;
+use crate::vertices::VertexSource;
+use crate::{
+    Allocator, BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, UpdateRule,
+    Vertices, YAxis,
+};
+
+/// The largest width and height of a buffer, in pixels.
+pub(crate) const MAX_SIZE: u32 = 16_384;
+
+/// What an object is made with; none of it changes afterwards.
+#[derive(Clone, Copy)]
+pub struct Settings {
+    /// The highest instruction set that may be used.
+    pub implementation: Implementation,
+    /// How sub-tiles take in triangles.
+    pub update_rule: UpdateRule,
+    /// The direction in which rows are counted.
+    pub y_axis: YAxis,
+    /// Where the buffer's memory comes from.
+    pub allocator: Allocator,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            implementation: Implementation::Avx512,
+            update_rule: UpdateRule::default(),
+            y_axis: YAxis::default(),
+            allocator: Allocator::SYSTEM,
+        }
+    }
+}
+
+/// How a mesh is drawn, tested or binned.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DrawOptions {
+    /// Takes vertices (x, y, z, 1) to clip space; without it they are clip space (x, y, w) already.
+    pub model_to_clip: Option<Mat4>,
+    /// Which triangles face away.
+    pub winding: BackfaceWinding,
+    /// Which planes the mesh may cross; see [`ClipPlanes`].
+    pub clip_planes: ClipPlanes,
+}
+
+impl DrawOptions {
+    /// The default options with a matrix.
+    pub fn with_matrix(model_to_clip: Mat4) -> Self {
+        Self { model_to_clip: Some(model_to_clip), ..Self::default() }
+    }
+}
+
+/// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
+///
+/// Clip space is (x, y, w) with x to the right, y up and w away from the eye; depth is 1/w, 0 infinitely
+/// far, larger is nearer. An object may be sent between threads, and shared by threads that only query.
+pub struct MaskedOcclusionCulling {
+    implementation: Implementation,
+    update_rule: UpdateRule,
+    y_axis: YAxis,
+    allocator: Allocator,
+    near: f32,
+    buffer: Option<Buffer>,
+    counters: Counters,
+}
+
+impl Default for MaskedOcclusionCulling {
+    fn default() -> Self {
+        Self::new(Settings::default())
+    }
+}
+
+impl MaskedOcclusionCulling {
+    /// An object without a buffer, on the best instruction set that the processor has and `settings` allow.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            implementation: settings.implementation.capped(),
+            update_rule: settings.update_rule,
+            y_axis: settings.y_axis,
+            allocator: settings.allocator,
+            near: 0.0,
+            buffer: None,
+            counters: Counters::default(),
+        }
+    }
+
+    /// The instruction set in use.
+    pub fn implementation(&self) -> Implementation {
+        self.implementation
+    }
+
+    /// The update rule in use.
+    pub fn update_rule(&self) -> UpdateRule {
+        self.update_rule
+    }
+
+    /// The direction in which rows are counted.
+    pub fn y_axis(&self) -> YAxis {
+        self.y_axis
+    }
+
+    /// The allocator that the object was made with.
+    pub fn allocator(&self) -> Allocator {
+        self.allocator
+    }
+
+    /// Allocates a buffer of `width` by `height` pixels, each from 1 to 16,384, and clears it.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps the buffer that it had.
+    pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {
+        if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
+            return Err(Error::InvalidSize);
+        }
+        if self.resolution() != Some((width, height)) {
+            self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator)?);
+        }
+        self.clear_buffer()
+    }
+
+    /// Width and height in pixels, once set.
+    pub fn resolution(&self) -> Option<(u32, u32)> {
+        self.buffer.as_ref().map(|b| (b.width(), b.height()))
+    }
+
+    /// The size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
+    /// rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and
+    /// row of bins reach to the buffer's edge.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for no bins, or bins narrower or lower than a tile.
+    pub fn compute_bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
+        self.buffer()?.bin_size(bins_w, bins_h)
+    }
+
+    /// Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
+    ///
+    /// # Errors
+    /// [`Error::InvalidNumber`] for NaN or an infinity; the plane stays where it was.
+    pub fn set_near_clip_plane(&mut self, near: f32) -> Result<(), Error> {
+        if !near.is_finite() {
+            return Err(Error::InvalidNumber);
+        }
+        self.near = near;
+        Ok(())
+    }
+
+    /// The near plane, in clip-space w.
+    pub fn near_clip_plane(&self) -> f32 {
+        self.near
+    }
+
+    /// Sets every pixel infinitely far.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`].
+    pub fn clear_buffer(&mut self) -> Result<(), Error> {
+        self.buffer.as_mut().ok_or(Error::NoBuffer)?.clear();
+        Ok(())
+    }
+
+    /// Folds `other` into this buffer: afterwards it hides what either hid, conservatively. The two may
+    /// differ in instruction set and update rule.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`], [`Error::SizeMismatch`]; nothing is changed.
+    pub fn merge_buffer(&mut self, other: &Self) -> Result<(), Error> {
+        let (mine, theirs) = (self.buffer.as_mut().ok_or(Error::NoBuffer)?, other.buffer()?);
+        if (mine.width(), mine.height(), self.y_axis) != (theirs.width(), theirs.height(), other.y_axis) {
+            return Err(Error::SizeMismatch);
+        }
+        crate::buffer::merge::merge(self.implementation, mine, theirs);
+        Ok(())
+    }
+
+    /// Draws occluders: three indices a triangle.
+    ///
+    /// Returns `ViewCulled` when every triangle lies outside of the view or faces away, else `Visible`.
+    /// Triangles with a NaN or infinite coordinate are dropped and counted: an occluder less is safe.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `triangles` is not whole triangles;
+    /// [`Error::IndexOutOfRange`]. Nothing is drawn.
+    pub fn render_triangles(
+        &mut self,
+        vertices: Vertices<'_>,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        self.check_mesh(&vertices, triangles)?;
+        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
+        unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
+    }
+
+    /// # Safety
+    /// Every vertex that `triangles` names can be read through `vertices`.
+    pub(crate) unsafe fn render_triangles_unchecked(
+        &mut self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        let camera = self.camera(options)?;
+        let buffer = self.buffer.as_ref().ok_or(Error::NoBuffer)?;
+        let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract for the vertices; `&mut self` keeps every other user of the buffer away.
+        let (result, tally) = unsafe { pipeline::draw(self.implementation, buffer, &camera, &mesh) };
+        self.counters.add_draw(&tally);
+        Ok(result)
+    }
+
+    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn?
+    ///
+    /// Every pixel that a triangle touches counts, not only those whose centre it covers. `Visible` is
+    /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer
+    /// to the eye than can be projected.
+    ///
+    /// # Errors
+    /// As [`Self::render_triangles`].
+    pub fn test_triangles(
+        &self,
+        vertices: Vertices<'_>,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        self.check_mesh(&vertices, triangles)?;
+        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
+        unsafe { self.test_triangles_unchecked(vertices.source(), triangles, options) }
+    }
+
+    /// # Safety
+    /// Every vertex that `triangles` names can be read through `vertices`.
+    pub(crate) unsafe fn test_triangles_unchecked(
+        &self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        let camera = self.camera(options)?;
+        let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract for the vertices.
+        let (result, tally) = unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, &mesh) };
+        self.counters.add_query(0, &tally);
+        Ok(result)
+    }
+
+    /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose
+    /// nearest point is at `w_min`. Every pixel that it touches counts.
+    ///
+    /// `ViewCulled` when it lies off screen; `Visible` when a coordinate is NaN, `w_min` is not positive,
+    /// or the rectangle is empty.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`].
+    pub fn test_rect(&self, x_min: f32, y_min: f32, x_max: f32, y_max: f32, w_min: f32) -> Result<CullingResult, Error> {
+        let buffer = self.buffer()?;
+        let (result, tally) =
+            rectangle::test(self.implementation, buffer, self.y_axis, [x_min, y_min, x_max, y_max], w_min);
+        self.counters.add_query(1, &tally);
+        Ok(result)
+    }
+
+    /// Projects triangles and appends each that may be drawn to the list of every bin that it reaches;
+    /// `lists` are `bins_w * bins_h` bins, row by row.
+    ///
+    /// # Errors
+    /// As [`Self::render_triangles`], and [`Error::InvalidSize`] for a bin count that
+    /// [`Self::compute_bin_size`] refuses or that is not the length of `lists`: nothing is binned.
+    /// [`Error::ListFull`]: some list had no room; what fitted is in the lists.
+    pub fn bin_triangles(
+        &self,
+        vertices: Vertices<'_>,
+        triangles: &[u32],
+        lists: &mut [TriList<'_>],
+        bins_w: u32,
+        bins_h: u32,
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        self.check_mesh(&vertices, triangles)?;
+        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
+        unsafe { self.bin_triangles_unchecked(vertices.source(), triangles, lists, bins_w, bins_h, options) }
+    }
+
+    /// # Safety
+    /// Every vertex that `triangles` names can be read through `vertices`.
+    pub(crate) unsafe fn bin_triangles_unchecked(
+        &self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        lists: &mut [TriList<'_>],
+        bins_w: u32,
+        bins_h: u32,
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        let buffer = self.buffer()?;
+        let bin_size = buffer.bin_size(bins_w, bins_h)?;
+        if lists.len() as u64 != u64::from(bins_w) * u64::from(bins_h) {
+            return Err(Error::InvalidSize);
+        }
+        let camera = self.camera(options)?;
+        let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract for the vertices.
+        let (result, tally, full) =
+            unsafe { pipeline::bin(self.implementation, buffer, &camera, &mesh, lists, bin_size, (bins_w, bins_h)) };
+        self.counters.add_draw(&tally);
+        if full { Err(Error::ListFull) } else { Ok(result) }
+    }
+
+    /// Draws a list inside `scissor`, or everywhere.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8
+    /// (or ends at the buffer's edge), or reaches outside of the buffer.
+    pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
+        // SAFETY: `&mut self` keeps every other user of the buffer away.
+        unsafe { self.render_trilist_shared(list, scissor) }
+    }
+
+    /// As [`Self::render_trilist`], for several threads at once.
+    ///
+    /// # Errors
+    /// As [`Self::render_trilist`].
+    ///
+    /// # Safety
+    /// While it runs, no other thread draws into an overlapping rectangle, and none queries, merges,
+    /// clears or reads the buffer.
+    pub unsafe fn render_trilist_shared(&self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
+        let buffer = self.buffer()?;
+        let scissor = buffer.scissor_tiles(scissor)?;
+        // SAFETY: the caller's contract for the buffer.
+        let tally = unsafe { pipeline::draw_list(self.implementation, buffer, list, scissor) };
+        self.counters.add_draw(&tally);
+        Ok(())
+    }
+
+    /// Writes the depth of every pixel to `depth`, width by height, row by row; negative where nothing
+    /// was drawn. `flip_y` writes the last row first.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `depth` is shorter than the buffer.
+    pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
+        let buffer = self.buffer()?;
+        let pixels = buffer.width() as usize * buffer.height() as usize;
+        let depth = depth.get_mut(..pixels).ok_or(Error::InvalidSize)?;
+        crate::buffer::pixels::write(buffer, depth, flip_y);
+        Ok(())
+    }
+
+    /// All that was counted since the object was made.
+    pub fn statistics(&self) -> Statistics {
+        self.counters.snapshot()
+    }
+
+    fn buffer(&self) -> Result<&Buffer, Error> {
+        self.buffer.as_ref().ok_or(Error::NoBuffer)
+    }
+
+    fn camera(&self, options: &DrawOptions) -> Result<Camera, Error> {
+        let near = if options.clip_planes.contains(ClipPlanes::NEAR) { self.near } else { 0.0 };
+        let buffer = self.buffer()?;
+        Ok(Camera::new(buffer.width(), buffer.height(), self.y_axis, near))
+    }
+
+    fn check_mesh(&self, vertices: &Vertices<'_>, triangles: &[u32]) -> Result<(), Error> {
+        self.buffer()?;
+        if triangles.len() % 3 != 0 {
+            return Err(Error::InvalidSize);
+        }
+        match pipeline::max_index(self.implementation, triangles) {
+            Some(max) if max as usize >= vertices.len() => Err(Error::IndexOutOfRange),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checked form for the boundary: is every index below `count`?
+    pub(crate) fn check_indices(&self, triangles: &[u32], count: usize) -> Result<(), Error> {
+        match pipeline::max_index(self.implementation, triangles) {
+            Some(max) if max as usize >= count => Err(Error::IndexOutOfRange),
+            _ => Ok(()),
+        }
+    }
+}
+

@@ -1,0 +1,51 @@
+//! What a call can refuse, and nothing else: each variant is one status of the C interface.
+
+use core::fmt;
+
+/// Why a call was refused. Nothing was drawn, merged or changed unless the variant says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Error {
+    /// A pointer that has to name something was null (C interface only).
+    NullPointer,
+    /// An integer that stands for an enumeration has no meaning there (C interface only).
+    InvalidEnum,
+    /// A width, height, bin count, triangle count or rectangle is outside of what is accepted.
+    InvalidSize,
+    /// A number that has to be finite is not (the near plane).
+    InvalidNumber,
+    /// A vertex layout whose stride is negative, or which reaches outside of the vertex slice.
+    InvalidLayout,
+    /// The object has no buffer yet: call `set_resolution` first.
+    NoBuffer,
+    /// An index names a vertex that is not there.
+    IndexOutOfRange,
+    /// Two buffers of different resolution, or with rows in different directions, cannot be merged.
+    SizeMismatch,
+    /// A triangle list was full: the triangles that fit are in it, the others are not drawn from it.
+    ListFull,
+    /// The allocator returned nothing. The object keeps the buffer that it had.
+    OutOfMemory,
+    /// The library failed inside; no memory was harmed, but the call did not finish (C interface only).
+    Internal,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Error::NullPointer => "a pointer that has to name something is null",
+            Error::InvalidEnum => "an enumeration has no such value",
+            Error::InvalidSize => "a size, count or rectangle is outside of what is accepted",
+            Error::InvalidNumber => "a number that has to be finite is not",
+            Error::InvalidLayout => "the vertex layout reaches outside of the vertices",
+            Error::NoBuffer => "no buffer: the resolution was never set",
+            Error::IndexOutOfRange => "an index names a vertex that is not there",
+            Error::SizeMismatch => "the two buffers differ in resolution or row direction",
+            Error::ListFull => "a triangle list is full",
+            Error::OutOfMemory => "out of memory",
+            Error::Internal => "the library failed inside",
+        })
+    }
+}
+
+impl std::error::Error for Error {}

@@ -1,0 +1,3 @@
+//! stub
+use crate::Implementation;
+pub(crate) fn available() -> &'static [Implementation] { &[Implementation::Scalar] }

@@ -1,0 +1,59 @@
+//! Counters that calls add to once, at their end, from whichever thread they ran on.
+
+use core::sync::atomic::{AtomicI64, Ordering::Relaxed};
+
+use crate::{OccludeeStatistics, OccluderStatistics, Statistics};
+
+/// What one call counted, kept in registers until it ends.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Tally {
+    pub processed: u64,
+    pub rasterized: u64,
+    pub traversed: u64,
+    pub updated: u64,
+    pub merged: u64,
+    pub dropped: u64,
+}
+
+#[derive(Default)]
+pub(crate) struct Counters {
+    occluders: [AtomicI64; 6],
+    occludees: [AtomicI64; 4],
+}
+
+impl Counters {
+    pub fn add_draw(&self, t: &Tally) {
+        let counts = [t.processed, t.rasterized, t.traversed, t.updated, t.merged, t.dropped];
+        for (counter, n) in self.occluders.iter().zip(counts) {
+            counter.fetch_add(n as i64, Relaxed);
+        }
+    }
+
+    pub fn add_query(&self, rectangles: u64, t: &Tally) {
+        let counts = [rectangles, t.processed, t.rasterized, t.traversed];
+        for (counter, n) in self.occludees.iter().zip(counts) {
+            counter.fetch_add(n as i64, Relaxed);
+        }
+    }
+
+    pub fn snapshot(&self) -> Statistics {
+        let d = self.occluders.each_ref().map(|c| c.load(Relaxed));
+        let q = self.occludees.each_ref().map(|c| c.load(Relaxed));
+        Statistics {
+            occluders: OccluderStatistics {
+                num_processed_triangles: d[0],
+                num_rasterized_triangles: d[1],
+                num_tiles_traversed: d[2],
+                num_tiles_updated: d[3],
+                num_tiles_merged: d[4],
+                num_dropped_triangles: d[5],
+            },
+            occludees: OccludeeStatistics {
+                num_processed_rectangles: q[0],
+                num_processed_triangles: q[1],
+                num_rasterized_triangles: q[2],
+                num_tiles_traversed: q[3],
+            },
+        }
+    }
+}

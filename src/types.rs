@@ -1,0 +1,234 @@
+//! The small vocabulary of the interface: what a caller says and hears, in Rust's form and in the
+//! integers and structs that C and C++ see (`repr(C)`, same values as the class that engines know).
+
+/// An instruction set that the kernel is compiled for. All of them give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(i32)]
+pub enum Implementation {
+    /// No vector instructions by name: runs anywhere.
+    Scalar = -1,
+    /// x86-64 baseline.
+    Sse2 = 0,
+    /// SSE4.1 (with SSSE3's byte shuffle).
+    Sse41 = 1,
+    /// AVX2.
+    Avx2 = 2,
+    /// AVX-512 F, BW, DQ and VL.
+    Avx512 = 3,
+    /// aarch64's Advanced SIMD.
+    Neon = 16,
+}
+
+impl Implementation {
+    /// Every instruction set that this processor can run, the plainest first.
+    pub fn available() -> &'static [Implementation] {
+        crate::simd::available()
+    }
+
+    /// The best instruction set that this processor has and that `self`, as the highest allowed,
+    /// permits. On another architecture than the named one, anything but `Scalar` permits all.
+    pub fn capped(self) -> Implementation {
+        let all = Self::available();
+        if self == Implementation::Scalar {
+            return self;
+        }
+        if !all.contains(&self) && (self == Implementation::Neon) == !cfg!(target_arch = "aarch64") {
+            return *all.last().unwrap_or(&Implementation::Scalar);
+        }
+        *all.iter().rfind(|i| **i as i32 <= self as i32).unwrap_or(&Implementation::Scalar)
+    }
+}
+
+/// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(i32)]
+pub enum UpdateRule {
+    /// One reference depth and two working layers (20 bytes a sub-tile): the most accurate, in any order.
+    #[default]
+    ThreeLayer = 0,
+    /// Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion Culling", HPG 2016, section 3.2.
+    Quick = 1,
+    /// After Andersson, Hasselgren, Akenine-Möller: "Masked Depth Culling for Graphics Hardware", 2015.
+    Accurate = 2,
+}
+
+/// The direction in which screen rows are counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(i32)]
+pub enum YAxis {
+    /// Row 0 is the top of the screen (Direct3D, Vulkan, Metal).
+    #[default]
+    Down = 0,
+    /// Row 0 is the bottom of the screen (OpenGL).
+    Up = 1,
+}
+
+/// Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(i32)]
+pub enum BackfaceWinding {
+    /// None: both sides are drawn.
+    None = 0,
+    /// Clockwise triangles face away.
+    #[default]
+    Clockwise = 1,
+    /// Counter-clockwise triangles face away.
+    CounterClockwise = 2,
+}
+
+/// What a draw or a query found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(i32)]
+pub enum CullingResult {
+    /// It may be seen.
+    Visible = 0,
+    /// It is certainly hidden by what was drawn.
+    Occluded = 1,
+    /// It lies outside of the view, or faces away.
+    ViewCulled = 3,
+}
+
+/// The frustum planes that a mesh may cross: a set of flags.
+///
+/// Only `NEAR` changes anything: without it the near plane of the object is not applied (geometry
+/// behind the eye never is). The side planes need no promise from the caller; leaving one out is
+/// always safe and never faster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ClipPlanes(u8);
+
+impl ClipPlanes {
+    /// No plane.
+    pub const NONE: Self = Self(0);
+    /// The near plane.
+    pub const NEAR: Self = Self(0x01);
+    /// x = -w.
+    pub const LEFT: Self = Self(0x02);
+    /// x = w.
+    pub const RIGHT: Self = Self(0x04);
+    /// y = -w.
+    pub const BOTTOM: Self = Self(0x08);
+    /// y = w.
+    pub const TOP: Self = Self(0x10);
+    /// The four side planes.
+    pub const SIDES: Self = Self(0x1e);
+    /// All five.
+    pub const ALL: Self = Self(0x1f);
+
+    /// The set with these bits, or nothing where a bit is not a plane.
+    pub const fn from_bits(bits: u32) -> Option<Self> {
+        if bits & !0x1f == 0 { Some(Self(bits as u8)) } else { None }
+    }
+
+    /// The bits of the set.
+    pub const fn bits(self) -> u32 {
+        self.0 as u32
+    }
+
+    /// Is every plane of `other` in the set?
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+impl Default for ClipPlanes {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+impl core::ops::BitOr for ClipPlanes {
+    type Output = Self;
+    fn bitor(self, rhs: Self) -> Self {
+        Self(self.0 | rhs.0)
+    }
+}
+
+/// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes from the vertex's x.
+///
+/// Packed `x, y, z, w` is `(16, 4, 12)` without a matrix and `(16, 4, 8)` with one; packed `x, y, z`
+/// with a matrix is `(12, 4, 8)`; a structure of arrays of `n` is `(4, 4 * n, 8 * n)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct VertexLayout {
+    /// Bytes from one vertex to the next; not negative.
+    pub stride: i32,
+    /// Bytes from x to y.
+    pub offset_y: i32,
+    /// Bytes from x to w; with a matrix, to z.
+    pub offset_zw: i32,
+}
+
+impl VertexLayout {
+    /// Clip-space `x, y, z, w`, 16 bytes a vertex. The default.
+    pub const CLIP_SPACE: Self = Self::new(16, 4, 12);
+    /// Model-space `x, y, z`, 12 bytes a vertex, to be used with a matrix.
+    pub const POSITIONS: Self = Self::new(12, 4, 8);
+
+    /// A layout from its stride and offsets in bytes.
+    pub const fn new(stride: i32, offset_y: i32, offset_zw: i32) -> Self {
+        Self { stride, offset_y, offset_zw }
+    }
+}
+
+impl Default for VertexLayout {
+    fn default() -> Self {
+        Self::CLIP_SPACE
+    }
+}
+
+/// A rectangle of pixels: `min` inside, `max` outside. x in multiples of 32, y of 8; a `max` may also
+/// be the width or height of the buffer. Rows are counted in the object's y direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct ScissorRect {
+    /// First column.
+    pub min_x: i32,
+    /// First row.
+    pub min_y: i32,
+    /// Column after the last.
+    pub max_x: i32,
+    /// Row after the last.
+    pub max_y: i32,
+}
+
+/// Counts of what draws did since the object was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct OccluderStatistics {
+    /// Triangles submitted to `render_triangles` and `bin_triangles`, and those of drawn lists.
+    pub num_processed_triangles: i64,
+    /// Those that face the eye, lie in view and hold a pixel centre.
+    pub num_rasterized_triangles: i64,
+    /// 32x8 tiles that such triangles reach and that were not nearer already.
+    pub num_tiles_traversed: i64,
+    /// Tiles in which a triangle changed, or could have changed, a sub-tile.
+    pub num_tiles_updated: i64,
+    /// Tiles in which a reference depth rose.
+    pub num_tiles_merged: i64,
+    /// Triangles dropped for a NaN, an infinite coordinate, or a distance beyond 2^40.
+    pub num_dropped_triangles: i64,
+}
+
+/// Counts of what queries did since the object was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct OccludeeStatistics {
+    /// Rectangles tested.
+    pub num_processed_rectangles: i64,
+    /// Triangles submitted to `test_triangles` (those after the first visible one included).
+    pub num_processed_triangles: i64,
+    /// Those of them that were compared with the buffer.
+    pub num_rasterized_triangles: i64,
+    /// Tiles that rectangles and triangles were compared with, sub-tile by sub-tile.
+    pub num_tiles_traversed: i64,
+}
+
+/// All counts of an object. Gathered always; the same on every instruction set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct Statistics {
+    /// Of draws.
+    pub occluders: OccluderStatistics,
+    /// Of queries.
+    pub occludees: OccludeeStatistics,
+}
