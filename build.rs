@@ -20,5 +20,7 @@ fn main() {
         "{source}: MOC_ABI_VERSION is {declared:?}, the crate's version asks for {expected}"
     );
 
-    println!("cargo:rustc-env=MOC_TARGET={}", env::var("TARGET").unwrap());
+    for name in ["TARGET", "HOST"] {
+        println!("cargo:rustc-env=MOC_{name}={}", env::var(name).unwrap());
+    }
 }

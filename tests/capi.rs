@@ -37,7 +37,7 @@ fn compiler(cpp: bool, folder: &Path) -> Command {
     cc::Build::new()
         .cpp(cpp)
         .target(env!("MOC_TARGET"))
-        .host(env!("MOC_TARGET"))
+        .host(env!("MOC_HOST"))
         .opt_level(0)
         .debug(true)
         .cargo_metadata(false)
