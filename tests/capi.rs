@@ -24,6 +24,7 @@ struct Program {
 
 const ALL_FUNCTIONS: Program = Program { name: "all_functions", sources: &["all_functions.c"], cpp: false };
 const HOSTILE: Program = Program { name: "hostile", sources: &["hostile.c"], cpp: false };
+const EXACT_ARRAYS: Program = Program { name: "exact_arrays", sources: &["exact_arrays.c"], cpp: false };
 const PEER_STYLE: Program = Program { name: "peer_style", sources: &["peer_style.cpp"], cpp: true };
 const SWITCHES: Program = Program {
     name: "switches",
@@ -113,6 +114,8 @@ macro_rules! programs {
 programs! {
     all_functions_shared: ALL_FUNCTIONS, Library::Shared;
     all_functions_static: ALL_FUNCTIONS, Library::Static;
+    exact_arrays_shared: EXACT_ARRAYS, Library::Shared;
+    exact_arrays_static: EXACT_ARRAYS, Library::Static;
     hostile_shared: HOSTILE, Library::Shared;
     hostile_static: HOSTILE, Library::Static;
     peer_style_shared: PEER_STYLE, Library::Shared;
@@ -121,6 +124,11 @@ programs! {
     switches_static: SWITCHES, Library::Static;
     threads_shared: THREADS, Library::Shared;
     threads_static: THREADS, Library::Static;
+}
+
+#[test]
+fn exact_arrays_under_sanitizers() {
+    under_sanitizers(&EXACT_ARRAYS);
 }
 
 #[test]
