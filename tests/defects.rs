@@ -148,7 +148,7 @@ fn d05_nan_and_infinite_vertices_are_dropped_and_counted() {
 #[test]
 fn d06_flat_edges_cover_no_false_pixel_in_large_buffers() {
     let size = (3840, 2160);
-    let t = [[-0.916220546, 0.454960018], [0.813307285, 0.454956383], [-0.809384406, 0.60950911]];
+    let t = [[-0.916_220_55, 0.454_960_02], [0.813_307_3, 0.454_956_38], [-0.809_384_4, 0.609_509_1]];
     let clip = t.map(|[x, y]: [f32; 2]| [x, y, 0.0, 1.0]);
     let wide = t.map(|[x, y]| [f64::from(x), f64::from(y), 1.0]);
     let exact = Homogeneous::new(&wide, 0.0, size, false).unwrap();
