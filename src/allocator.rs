@@ -86,7 +86,8 @@ impl AlignedWords {
 
     fn layout(len: usize) -> Result<Layout, Error> {
         let bytes = len.checked_mul(4).ok_or(Error::OutOfMemory)?;
-        Layout::from_size_align(bytes.max(64), 64).map_err(|_| Error::OutOfMemory)
+        // A whole number of alignments: a callback may be C11's aligned_alloc, which asks for that.
+        Ok(Layout::from_size_align(bytes.max(64), 64).map_err(|_| Error::OutOfMemory)?.pad_to_align())
     }
 
     pub fn as_ptr(&self) -> *mut u32 {

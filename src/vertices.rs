@@ -16,17 +16,7 @@ impl<'a> Vertices<'a> {
     /// # Errors
     /// [`Error::InvalidLayout`] where the stride or an offset is negative.
     pub fn new(data: &'a [f32], layout: VertexLayout) -> Result<Self, Error> {
-        let VertexLayout { stride, offset_y, offset_zw } = layout;
-        if stride < 0 || offset_y < 0 || offset_zw < 0 {
-            return Err(Error::InvalidLayout);
-        }
-        let bytes = size_of_val(data);
-        let first = offset_y.max(offset_zw) as usize + size_of::<f32>();
-        let count = match (bytes.checked_sub(first), stride as usize) {
-            (None, _) => 0,
-            (Some(_), 0) => 1,
-            (Some(rest), stride) => 1 + rest / stride,
-        };
+        let count = vertex_count(size_of_val(data), layout)?;
         Ok(Self { data, layout, count })
     }
 
@@ -53,6 +43,20 @@ impl<'a> Vertices<'a> {
     pub(crate) fn source(&self) -> VertexSource {
         VertexSource { base: self.data.as_ptr().cast(), layout: self.layout }
     }
+}
+
+/// How many vertices of `layout` lie whole within `bytes`.
+pub(crate) fn vertex_count(bytes: usize, layout: VertexLayout) -> Result<usize, Error> {
+    let VertexLayout { stride, offset_y, offset_zw } = layout;
+    if stride < 0 || offset_y < 0 || offset_zw < 0 {
+        return Err(Error::InvalidLayout);
+    }
+    let first = offset_y.max(offset_zw) as usize + size_of::<f32>();
+    Ok(match (bytes.checked_sub(first), stride as usize) {
+        (None, _) => 0,
+        (Some(_), 0) => 1,
+        (Some(rest), stride) => 1 + rest / stride,
+    })
 }
 
 /// The pointer form that the pipeline reads. Whoever makes one vouches that every vertex that an

@@ -1,0 +1,406 @@
+/*
+ * CPU occlusion culling on a masked hierarchical depth buffer: the C++ class.
+ *
+ * Header-only over the C functions of masked_occlusion_culling.h, so that one compiled library serves every
+ * compiler. C++11; nothing here throws.
+ *
+ * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is
+ * 1/w: 0 is infinitely far, larger is nearer. The same triangle is drawn by the same pixels on every
+ * instruction set.
+ *
+ * Wrong input. Pointers must be null or valid. Where an argument is refused (a null pointer that has to name
+ * something, a negative count, a size outside of 1 to 16384, a missing buffer, an enumeration without that
+ * value), a method that returns nothing does nothing, a query and a draw answer VISIBLE, and a number that is
+ * asked for is 0. The C functions say what was wrong.
+ *
+ * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run at once on several threads while
+ * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent.
+ *
+ * SPDX-License-Identifier: Apache-2.0 OR MIT
+ */
+#pragma once
+
+#include <stddef.h>
+
+#include "masked_occlusion_culling.h"
+
+/*
+ * Switches, to be defined before the include or on the command line. They are settings of the objects that
+ * Create makes in the translation unit, and may differ between translation units:
+ *
+ * QUICK_MASK        1: the update rule of "Masked Software Occlusion Culling"; 0: that of "Masked Depth
+ *                   Culling for Graphics Hardware"; not defined: three layers, the most accurate.
+ * USE_D3D           1: row 0 is the top of the screen (default); 0: the bottom (OpenGL).
+ * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
+ * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
+ *
+ * Accepted without effect, because both answers hold always: CLIPPING_PRESERVES_ORDER (the order is kept)
+ * and ENABLE_STATS (statistics are gathered).
+ */
+#ifndef USE_D3D
+#define USE_D3D 1
+#endif
+#ifndef PRECISE_COVERAGE
+#define PRECISE_COVERAGE 1
+#endif
+#ifndef CLIPPING_PRESERVES_ORDER
+#define CLIPPING_PRESERVES_ORDER 1
+#endif
+#ifndef ENABLE_STATS
+#define ENABLE_STATS 0
+#endif
+#ifndef MOC_RECORDER_ENABLE
+#define MOC_RECORDER_ENABLE 0
+#endif
+#if MOC_RECORDER_ENABLE
+#ifndef MOC_RECORDER_ENABLE_PLAYBACK
+#define MOC_RECORDER_ENABLE_PLAYBACK 0
+#endif
+#error "MOC_RECORDER_ENABLE: the frame recorder is not in this version of the library"
+#endif
+
+/* The switches as the template argument of Create. Bits 0 and 1: MOC_UpdateRule; 2: MOC_YAxis; 3: precise
+ * coverage; 4: AVX2 at most. */
+#ifndef QUICK_MASK
+#define MOC_DETAIL_RULE 0u
+#elif QUICK_MASK
+#define MOC_DETAIL_RULE 1u
+#else
+#define MOC_DETAIL_RULE 2u
+#endif
+#if USE_D3D
+#define MOC_DETAIL_Y_AXIS 0u
+#else
+#define MOC_DETAIL_Y_AXIS 4u
+#endif
+#if PRECISE_COVERAGE
+#define MOC_DETAIL_PRECISE 8u
+#else
+#define MOC_DETAIL_PRECISE 0u
+#endif
+#ifndef USE_AVX512
+#define MOC_DETAIL_CAP 0u
+#elif USE_AVX512
+#define MOC_DETAIL_CAP 0u
+#else
+#define MOC_DETAIL_CAP 16u
+#endif
+#define MOC_DETAIL_SWITCHES (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP)
+
+/** A masked hierarchical depth buffer to draw occluders into and to test occludees against. */
+class MaskedOcclusionCulling
+{
+public:
+    /** Allocates `size` bytes at a multiple of `alignment`; null when there is no memory. Must not throw. */
+    typedef void *(*pfnAlignedAlloc)(size_t alignment, size_t size);
+    /** Frees what pfnAlignedAlloc gave. Must not throw. */
+    typedef void (*pfnAlignedFree)(void *ptr);
+
+    /** An instruction set. All of them give the same bits. */
+    enum Implementation : int
+    {
+        SCALAR = MOC_SCALAR,
+        SSE2   = MOC_SSE2,
+        SSE41  = MOC_SSE41,
+        AVX2   = MOC_AVX2,
+        AVX512 = MOC_AVX512,
+        NEON   = MOC_NEON
+    };
+
+    /** Which triangles face away, by their winding in normalised device coordinates (y up). */
+    enum BackfaceWinding : int
+    {
+        BACKFACE_NONE = MOC_BACKFACE_NONE,
+        BACKFACE_CW   = MOC_BACKFACE_CW,
+        BACKFACE_CCW  = MOC_BACKFACE_CCW
+    };
+
+    /** What a draw or a query found. */
+    enum CullingResult : int
+    {
+        VISIBLE     = MOC_VISIBLE,
+        OCCLUDED    = MOC_OCCLUDED,
+        VIEW_CULLED = MOC_VIEW_CULLED
+    };
+
+    /** The frustum planes that a mesh may cross. Only the near plane changes anything. */
+    enum ClipPlanes : int
+    {
+        CLIP_PLANE_NONE   = MOC_CLIP_PLANE_NONE,
+        CLIP_PLANE_NEAR   = MOC_CLIP_PLANE_NEAR,
+        CLIP_PLANE_LEFT   = MOC_CLIP_PLANE_LEFT,
+        CLIP_PLANE_RIGHT  = MOC_CLIP_PLANE_RIGHT,
+        CLIP_PLANE_BOTTOM = MOC_CLIP_PLANE_BOTTOM,
+        CLIP_PLANE_TOP    = MOC_CLIP_PLANE_TOP,
+        CLIP_PLANE_SIDES  = MOC_CLIP_PLANE_SIDES,
+        CLIP_PLANE_ALL    = MOC_CLIP_PLANE_ALL
+    };
+
+    /** Where the coordinates of a vertex lie, in bytes. See MOC_VertexLayout for the usual ones. */
+    struct VertexLayout
+    {
+        VertexLayout() : mStride(0), mOffsetY(0), mOffsetW(0) {}
+        VertexLayout(int stride, int offsetY, int offsetZW) : mStride(stride), mOffsetY(offsetY), mOffsetW(offsetZW) {}
+
+        int mStride;      /**< from one vertex to the next; not negative */
+        int mOffsetY;     /**< from x to y */
+        union
+        {
+            int mOffsetZ; /**< from x to z, with a matrix */
+            int mOffsetW; /**< from x to w, without one */
+        };
+    };
+
+    /** A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the buffer's size. */
+    struct ScissorRect
+    {
+        ScissorRect() : mMinX(0), mMinY(0), mMaxX(0), mMaxY(0) {}
+        ScissorRect(int minX, int minY, int maxX, int maxY) : mMinX(minX), mMinY(minY), mMaxX(maxX), mMaxY(maxY) {}
+
+        int mMinX; /**< first column */
+        int mMinY; /**< first row, in the object's y direction */
+        int mMaxX; /**< column after the last */
+        int mMaxY; /**< row after the last */
+    };
+
+    /** A list of projected triangles in memory that the caller owns. */
+    struct TriList
+    {
+        unsigned int mNumTriangles; /**< how many triangles mPtr can hold */
+        unsigned int mTriIdx;       /**< how many it holds; 0 starts over */
+        float *mPtr;                /**< 9 floats a triangle */
+    };
+
+    /** Counts since the object was made. Gathered always; the same on every instruction set. */
+    struct OcclusionCullingStatistics
+    {
+        struct
+        {
+            long long mNumProcessedTriangles;  /**< submitted to be drawn or binned, and those of drawn lists */
+            long long mNumRasterizedTriangles; /**< facing the eye, in view, with a pixel centre */
+            long long mNumTilesTraversed;      /**< 32x8 tiles that they reach and that were not nearer already */
+            long long mNumTilesUpdated;        /**< tiles in which one changed, or could have changed, a sub-tile */
+            long long mNumTilesMerged;         /**< tiles in which a reference depth rose */
+            long long mNumDroppedTriangles;    /**< dropped for a NaN, an infinity or a distance beyond 2^40 */
+        } mOccluders;
+
+        struct
+        {
+            long long mNumProcessedRectangles; /**< rectangles tested */
+            long long mNumProcessedTriangles;  /**< triangles submitted to be tested */
+            long long mNumRasterizedTriangles; /**< those of them that were compared with the buffer */
+            long long mNumTilesTraversed;      /**< tiles that were compared with */
+        } mOccludees;
+    };
+
+    /*
+     * An object without a buffer, on the best instruction set that the processor has and the argument allows.
+     * Null when there is no memory, or the library is of another version than this header.
+     *
+     * The template argument carries the switches of the translation unit that calls; leave it out.
+     */
+    template <unsigned int Switches = MOC_DETAIL_SWITCHES>
+    static MaskedOcclusionCulling *Create(Implementation RequestedSIMD = AVX512)
+    {
+        return CreateWith(Switches, RequestedSIMD, nullptr, nullptr);
+    }
+
+    /** The same, with all memory of the object, itself included, from the two callbacks (both or neither null). */
+    template <unsigned int Switches = MOC_DETAIL_SWITCHES>
+    static MaskedOcclusionCulling *Create(Implementation RequestedSIMD, pfnAlignedAlloc alignedAlloc,
+                                          pfnAlignedFree alignedFree)
+    {
+        return CreateWith(Switches, RequestedSIMD, alignedAlloc, alignedFree);
+    }
+
+    /** Frees the object and its buffer. Null is allowed. There is no `delete`. */
+    static void Destroy(MaskedOcclusionCulling *moc) { MOC_Destroy(moc); }
+
+    /** Gives the object a cleared buffer, 1 to 16384 pixels each way; refused sizes keep the old one. */
+    void SetResolution(unsigned int width, unsigned int height) { MOC_SetResolution(this, width, height); }
+
+    /** The size of the buffer in pixels; 0 by 0 without one. */
+    void GetResolution(unsigned int &width, unsigned int &height) const
+    {
+        uint32_t w = 0, h = 0;
+        MOC_GetResolution(this, &w, &h);
+        width = w;
+        height = h;
+    }
+
+    /**
+     * The size of a bin in pixels: the buffer's divided by the number of bins, rounded down to 32 and 8. The
+     * last column and row of bins take the rest. 0 by 0 for a number that leaves no pixels, or no buffer.
+     */
+    void ComputeBinWidthHeight(unsigned int nBinsW, unsigned int nBinsH, unsigned int &outBinWidth,
+                               unsigned int &outBinHeight) const
+    {
+        uint32_t w = 0, h = 0;
+        MOC_ComputeBinWidthHeight(this, nBinsW, nBinsH, &w, &h);
+        outBinWidth = w;
+        outBinHeight = h;
+    }
+
+    /** The near plane, in clip-space w. The default is 0. NaN and infinities are refused. */
+    void SetNearClipPlane(float nearDist) { MOC_SetNearClipPlane(this, nearDist); }
+
+    /** The near plane, in clip-space w. */
+    float GetNearClipPlane() const
+    {
+        float near_w = 0.0f;
+        MOC_GetNearClipPlane(this, &near_w);
+        return near_w;
+    }
+
+    /** Sets every pixel infinitely far. */
+    void ClearBuffer() { MOC_ClearBuffer(this); }
+
+    /** Afterwards this buffer hides what either hid. Another size or y direction is refused. */
+    void MergeBuffer(MaskedOcclusionCulling *BufferB) { MOC_MergeBuffer(this, BufferB); }
+
+    /**
+     * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view or
+     * faces away, else VISIBLE. With a matrix the layout's last offset names z, without one it names w.
+     */
+    CullingResult RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
+                                  const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
+                                  ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
+                                  const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
+    {
+        const MOC_VertexLayout layout = Layout(vtxLayout);
+        int32_t result = MOC_VISIBLE;
+        MOC_RenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout, &result);
+        return static_cast<CullingResult>(result);
+    }
+
+    /** Tests a rectangle in normalised device coordinates whose nearest point is at wmin, in clip-space w. */
+    CullingResult TestRect(float xmin, float ymin, float xmax, float ymax, float wmin) const
+    {
+        int32_t result = MOC_VISIBLE;
+        MOC_TestRect(this, xmin, ymin, xmax, ymax, wmin, &result);
+        return static_cast<CullingResult>(result);
+    }
+
+    /** Tests occludees: the arguments of RenderTriangles; changes nothing. */
+    CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
+                                const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
+                                ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
+                                const VertexLayout &vtxLayout = VertexLayout(16, 4, 12)) const
+    {
+        const MOC_VertexLayout layout = Layout(vtxLayout);
+        int32_t result = MOC_VISIBLE;
+        MOC_TestTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout, &result);
+        return static_cast<CullingResult>(result);
+    }
+
+    /**
+     * Appends each triangle that may be drawn to the list of every bin that it reaches; nBinsW * nBinsH lists,
+     * row by row. A full list takes no more: its mTriIdx is then mNumTriangles, and less is hidden.
+     */
+    void BinTriangles(const float *inVtx, const unsigned int *inTris, int nTris, TriList *triLists,
+                      unsigned int nBinsW, unsigned int nBinsH, const float *modelToClipMatrix = nullptr,
+                      BackfaceWinding bfWinding = BACKFACE_CW, ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
+                      const VertexLayout &vtxLayout = VertexLayout(16, 4, 12)) const
+    {
+        const MOC_VertexLayout layout = Layout(vtxLayout);
+        MOC_BinTriangles(this, inVtx, inTris, nTris, reinterpret_cast<MOC_TriList *>(triLists), nBinsW, nBinsH,
+                         modelToClipMatrix, bfWinding, clipPlaneMask, &layout, nullptr);
+    }
+
+    /** Draws a list inside the rectangle (null: everywhere). Several threads may, on separate rectangles. */
+    void RenderTrilist(const TriList &triList, const ScissorRect *scissor)
+    {
+        if (scissor == nullptr)
+        {
+            MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), nullptr);
+            return;
+        }
+        const MOC_ScissorRect rect = {scissor->mMinX, scissor->mMinY, scissor->mMaxX, scissor->mMaxY};
+        MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), &rect);
+    }
+
+    /** The depth (1/w) of width * height pixels, row by row; negative where nothing was drawn. */
+    void ComputePixelDepthBuffer(float *depthData, bool flipY) const
+    {
+        MOC_ComputePixelDepthBuffer(this, depthData, flipY ? 1 : 0);
+    }
+
+    /** What was counted since the object was made. */
+    OcclusionCullingStatistics GetStatistics() const
+    {
+        MOC_Statistics s = {};
+        MOC_GetStatistics(this, &s);
+        OcclusionCullingStatistics stats;
+        stats.mOccluders.mNumProcessedTriangles = s.occluders.num_processed_triangles;
+        stats.mOccluders.mNumRasterizedTriangles = s.occluders.num_rasterized_triangles;
+        stats.mOccluders.mNumTilesTraversed = s.occluders.num_tiles_traversed;
+        stats.mOccluders.mNumTilesUpdated = s.occluders.num_tiles_updated;
+        stats.mOccluders.mNumTilesMerged = s.occluders.num_tiles_merged;
+        stats.mOccluders.mNumDroppedTriangles = s.occluders.num_dropped_triangles;
+        stats.mOccludees.mNumProcessedRectangles = s.occludees.num_processed_rectangles;
+        stats.mOccludees.mNumProcessedTriangles = s.occludees.num_processed_triangles;
+        stats.mOccludees.mNumRasterizedTriangles = s.occludees.num_rasterized_triangles;
+        stats.mOccludees.mNumTilesTraversed = s.occludees.num_tiles_traversed;
+        return stats;
+    }
+
+    /** The instruction set in use. */
+    Implementation GetImplementation() const
+    {
+        int32_t implementation = MOC_SCALAR;
+        MOC_GetImplementation(this, &implementation);
+        return static_cast<Implementation>(implementation);
+    }
+
+    /** (x, y, z, 1) * mtx for nVtx vertices, written as packed x, y, z, w. */
+    static void TransformVertices(const float *mtx, const float *inVtx, float *xfVtx, unsigned int nVtx,
+                                  const VertexLayout &vtxLayout = VertexLayout(12, 4, 8))
+    {
+        const MOC_VertexLayout layout = Layout(vtxLayout);
+        MOC_TransformVertices(mtx, inVtx, xfVtx, nVtx, &layout);
+    }
+
+    /** The callbacks of Create, or the library's own where none were given. */
+    void GetAllocFreeCallback(pfnAlignedAlloc &allocCallback, pfnAlignedFree &freeCallback) const
+    {
+        MOC_GetAllocFreeCallback(this, &allocCallback, &freeCallback);
+    }
+
+    /* The library makes and frees objects; this class only names them. */
+    MaskedOcclusionCulling() = delete;
+    ~MaskedOcclusionCulling() = delete;
+    MaskedOcclusionCulling(const MaskedOcclusionCulling &) = delete;
+    MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
+
+private:
+    static MaskedOcclusionCulling *CreateWith(unsigned int switches, Implementation implementation,
+                                              pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
+    {
+        const unsigned int library = MOC_AbiVersion(), header = MOC_ABI_VERSION;
+        const bool stable = header >= 1000;
+        if (stable ? library / 1000 != header / 1000 || library < header : library != header)
+            return nullptr;
+        MOC_Settings settings;
+        MOC_DefaultSettings(&settings);
+        settings.implementation = (switches & 16u) != 0 && implementation == AVX512 ? AVX2 : implementation;
+        settings.update_rule = static_cast<int32_t>(switches & 3u);
+        settings.y_axis = (switches & 4u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
+        settings.precise_coverage = (switches & 8u) != 0 ? 1 : 0;
+        settings.alloc = alignedAlloc;
+        settings.free = alignedFree;
+        MaskedOcclusionCulling *moc = nullptr;
+        MOC_Create(&settings, &moc);
+        return moc;
+    }
+
+    static MOC_VertexLayout Layout(const VertexLayout &layout)
+    {
+        const MOC_VertexLayout plain = {layout.mStride, layout.mOffsetY, layout.mOffsetW};
+        return plain;
+    }
+};
+
+static_assert(sizeof(MaskedOcclusionCulling::TriList) == sizeof(MOC_TriList) &&
+                  offsetof(MaskedOcclusionCulling::TriList, mTriIdx) == offsetof(MOC_TriList, count) &&
+                  offsetof(MaskedOcclusionCulling::TriList, mPtr) == offsetof(MOC_TriList, data),
+              "a TriList is passed to the C functions as it is");

@@ -1,0 +1,127 @@
+//! Sorting triangles into the lists of bins.
+
+use super::mesh::MeshArguments;
+use super::pointers::{object, slice_mut};
+use super::status::{MOC_Status, guard_result};
+use super::types::{MOC_TriList, MOC_VertexLayout};
+use crate::{Error, MaskedOcclusionCulling, TriList};
+
+/// The lists of the bins, in C's form.
+struct BinArguments {
+    lists: *mut MOC_TriList,
+    bins_w: u32,
+    bins_h: u32,
+}
+
+/// Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be
+/// drawn by MOC_RenderTrilist. Nothing is drawn.
+///
+/// `lists` are `bins_w` times `bins_h` lists, row by row; the bins are those of MOC_ComputeBinWidthHeight.
+/// The other arguments are those of MOC_RenderTriangles. `result` (may be null) gets MOC_VIEW_CULLED when
+/// no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may bin at once, into
+/// lists of their own.
+///
+/// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
+/// a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
+/// alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
+///
+/// # Safety
+/// As MOC_TestTriangles. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data`
+/// of each for 9 * `capacity` floats; nobody else uses them meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_BinTriangles(
+    moc: *const MaskedOcclusionCulling,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    lists: *mut MOC_TriList,
+    bins_w: u32,
+    bins_h: u32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { bin(moc, mesh, BinArguments { lists, bins_w, bins_h }, result) }
+}
+
+/// As MOC_BinTriangles, with the length of the vertex array in floats: an index that names a vertex outside
+/// of it is an error, and nothing is binned.
+///
+/// Errors: as MOC_BinTriangles and MOC_RenderTrianglesChecked.
+///
+/// # Safety
+/// As MOC_BinTriangles, where `vertices` can be read for `vertex_floats` floats, whatever the indices.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_BinTrianglesChecked(
+    moc: *const MaskedOcclusionCulling,
+    vertices: *const f32,
+    vertex_floats: usize,
+    triangles: *const u32,
+    n_triangles: i32,
+    lists: *mut MOC_TriList,
+    bins_w: u32,
+    bins_h: u32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: Some(vertex_floats),
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { bin(moc, mesh, BinArguments { lists, bins_w, bins_h }, result) }
+}
+
+/// # Safety
+/// As MOC_BinTriangles, and [`MeshArguments::check`].
+unsafe fn bin(
+    moc: *const MaskedOcclusionCulling,
+    mesh: MeshArguments,
+    bins: BinArguments,
+    result: *mut i32,
+) -> MOC_Status {
+    let append = || {
+        let BinArguments { lists, bins_w, bins_h } = bins;
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { mesh.check(moc) }?;
+        if lists.is_null() {
+            return Err(Error::NullPointer);
+        }
+        // Bounds the product of the counts before any list is looked at.
+        moc.compute_bin_size(bins_w, bins_h)?;
+        let count = bins_w as usize * bins_h as usize;
+        // SAFETY: the caller's contract; the two structs are laid out the same.
+        let lists = unsafe { slice_mut(lists.cast::<TriList<'_>>(), count) }?;
+        if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
+            return Err(Error::NullPointer);
+        }
+        // SAFETY: the caller's contract: every vertex that is named can be read.
+        unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, append) }
+}

@@ -1,0 +1,178 @@
+//! What changes the buffer: clearing, merging, drawing triangles and lists.
+
+use super::mesh::MeshArguments;
+use super::pointers::{object, object_mut, read};
+use super::status::{MOC_Status, guard, guard_result};
+use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
+use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
+
+/// Sets every pixel infinitely far.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { object_mut(moc) }?.clear_buffer())
+}
+
+/// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, conservatively. The
+/// two may differ in instruction set and update rule. Merging an object with itself changes nothing.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH.
+///
+/// # Safety
+/// Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
+/// changes `other`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_MergeBuffer(
+    moc: *mut MaskedOcclusionCulling,
+    other: *const MaskedOcclusionCulling,
+) -> MOC_Status {
+    guard(|| {
+        if core::ptr::eq(moc, other) {
+            // SAFETY: the caller's contract. No second reference to the same object is made.
+            return unsafe { object(other) }?.resolution().map(|_| ()).ok_or(Error::NoBuffer);
+        }
+        // SAFETY: the caller's contract, and the two are not the same.
+        let (moc, other) = unsafe { (object_mut(moc)?, object(other)?) };
+        moc.merge_buffer(other)
+    })
+}
+
+/// Draws occluders.
+///
+/// `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
+/// packed, 16 bytes a vertex). It may lie at any address. With `model_to_clip` (16 floats, x' = x*m[0] +
+/// y*m[4] + z*m[8] + m[12] and so on) vertices are x, y, z in model space, and the last offset of the layout
+/// names z; without it (null) they are x, y, w in clip space. `triangles` holds three indices for each of
+/// the `n_triangles` (0 or more). `winding` is a MOC_BackfaceWinding, `clip_planes` are MOC_ClipPlanes.
+///
+/// `result` (may be null) gets MOC_VIEW_CULLED when every triangle lies outside of the view or faces away,
+/// else MOC_VISIBLE; on errors MOC_VISIBLE. Triangles with a NaN or infinite coordinate are dropped and
+/// counted in the statistics.
+///
+/// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `triangles` may be null when there are no triangles),
+/// MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count, MOC_STATUS_INVALID_LAYOUT for a
+/// negative stride or indices that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. Every vertex that
+/// an index names can be read, and so can the indices, the matrix and the layout.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RenderTriangles(
+    moc: *mut MaskedOcclusionCulling,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { render(moc, mesh, result) }
+}
+
+/// As MOC_RenderTriangles, with the length of the vertex array in floats: an index that names a vertex
+/// outside of it is an error, and nothing is drawn.
+///
+/// Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT for a
+/// negative offset too.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `vertices` can be
+/// read for `vertex_floats` floats, and so can the indices, the matrix and the layout.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
+    moc: *mut MaskedOcclusionCulling,
+    vertices: *const f32,
+    vertex_floats: usize,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: Some(vertex_floats),
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { render(moc, mesh, result) }
+}
+
+/// # Safety
+/// As MOC_RenderTriangles, and [`MeshArguments::check`].
+unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: *mut i32) -> MOC_Status {
+    let draw = || {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object_mut(moc) }?;
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { mesh.check(moc) }?;
+        // SAFETY: the caller's contract: every vertex that is named can be read.
+        unsafe { moc.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, draw) }
+}
+
+/// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere).
+///
+/// Several threads may call it at once for one object, on rectangles that do not overlap.
+///
+/// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
+/// MOC_STATUS_INVALID_SIZE for a rectangle that is not in multiples of 32 and 8 or reaches outside of the
+/// buffer, or a list whose `count` is above its `capacity`.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
+/// rectangle of it, and none queries, merges, clears or resizes it. `list` can be read, its `data` for
+/// 9 * `count` floats.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RenderTrilist(
+    moc: *const MaskedOcclusionCulling,
+    list: *const MOC_TriList,
+    scissor: *const MOC_ScissorRect,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract. Drawing changes the buffer through cells that any `&` may write.
+        let moc = unsafe { object(moc) }?;
+        if !list.is_null() && !list.is_aligned() {
+            return Err(Error::InvalidLayout);
+        }
+        // SAFETY: null or aligned; the caller's contract; the two structs are laid out the same.
+        let list = unsafe { list.cast::<TriList<'_>>().as_ref() }.ok_or(Error::NullPointer)?;
+        if list.len > list.capacity {
+            return Err(Error::InvalidSize);
+        }
+        if list.len > 0 && list.data.is_null() {
+            return Err(Error::NullPointer);
+        }
+        // SAFETY: the caller's contract.
+        let scissor = unsafe { read(scissor) }.map(ScissorRect::from);
+        // SAFETY: the caller's contract: exclusive inside of the rectangle.
+        unsafe { moc.render_trilist_shared(list, scissor) }
+    })
+}

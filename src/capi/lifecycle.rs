@@ -1,0 +1,241 @@
+//! Making, sizing and freeing an object, and its small properties.
+
+use std::alloc::Layout;
+
+use super::pointers::{check_out, object, object_mut, read, write};
+use super::status::{MOC_Status, guard};
+use super::types::{self, MOC_Implementation, MOC_Settings, MOC_UpdateRule, MOC_YAxis};
+use crate::{Allocator, Error, MaskedOcclusionCulling, Settings};
+
+const DEFAULTS: MOC_Settings = MOC_Settings {
+    implementation: MOC_Implementation::MOC_AVX512 as i32,
+    update_rule: MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32,
+    y_axis: MOC_YAxis::MOC_Y_AXIS_DOWN as i32,
+    precise_coverage: 1,
+    alloc: None,
+    free: None,
+};
+
+/// The memory of the object itself. Aligned as its buffers are, and a whole number of alignments, so that
+/// one callback serves both and may be C11's aligned_alloc.
+fn object_layout() -> Result<Layout, Error> {
+    let layout = Layout::new::<MaskedOcclusionCulling>();
+    Ok(layout.align_to(64).map_err(|_| Error::OutOfMemory)?.pad_to_align())
+}
+
+/// Writes the default settings to `out`.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, DEFAULTS) };
+        Ok(())
+    })
+}
+
+/// Makes an object without a buffer, on the best instruction set that the processor has and `settings`
+/// allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults.
+///
+/// Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_ENUM,
+/// MOC_STATUS_OUT_OF_MEMORY.
+///
+/// # Safety
+/// `settings` is null or can be read, `out` is null or can be written. The callbacks do what
+/// MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_Create(
+    settings: *const MOC_Settings,
+    out: *mut *mut MaskedOcclusionCulling,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, core::ptr::null_mut()) };
+        // SAFETY: the caller's contract.
+        let settings = unsafe { read(settings) }.unwrap_or(DEFAULTS);
+        types::flag(settings.precise_coverage)?;
+        let allocator = match (settings.alloc, settings.free) {
+            (None, None) => Allocator::SYSTEM,
+            // SAFETY: the caller vouches for the callbacks.
+            (Some(alloc), Some(free)) => unsafe { Allocator::from_callbacks(alloc, free) },
+            _ => return Err(Error::NullPointer),
+        };
+        let settings = Settings {
+            implementation: types::implementation(settings.implementation)?,
+            update_rule: types::update_rule(settings.update_rule)?,
+            y_axis: types::y_axis(settings.y_axis)?,
+            allocator,
+        };
+        let moc = MaskedOcclusionCulling::new(settings);
+        let place = allocator.allocate(object_layout()?)?.cast::<MaskedOcclusionCulling>().as_ptr();
+        // SAFETY: `place` is fresh memory of the object's layout; `out` as above.
+        unsafe {
+            place.write(moc);
+            write(out, place);
+        }
+        Ok(())
+    })
+}
+
+/// Frees the object and its buffer. Null is allowed.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
+    guard(|| {
+        let Some(place) = core::ptr::NonNull::new(moc) else { return Ok(()) };
+        // SAFETY: the caller's contract: a live object that nobody else uses. `MOC_Create` took its memory
+        // from the same allocator with the same layout.
+        unsafe {
+            let allocator = place.as_ref().allocator();
+            place.drop_in_place();
+            allocator.free(place.cast(), object_layout()?);
+        }
+        Ok(())
+    })
+}
+
+/// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY. The object keeps
+/// the buffer that it had.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, width: u32, height: u32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { object_mut(moc) }?.set_resolution(width, height))
+}
+
+/// Writes the width and height of the buffer in pixels.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `width`
+/// and `height` are null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_GetResolution(
+    moc: *const MaskedOcclusionCulling,
+    width: *mut u32,
+    height: *mut u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        // SAFETY: the caller's contract.
+        unsafe { write_size(width, height, moc.resolution().ok_or(Error::NoBuffer)) }
+    })
+}
+
+/// Writes the size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
+/// rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and row of
+/// bins reach to the buffer's edge.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and MOC_STATUS_INVALID_SIZE for no bins or bins
+/// smaller than 32 by 8: 0 by 0 is written.
+///
+/// # Safety
+/// As MOC_GetResolution.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
+    moc: *const MaskedOcclusionCulling,
+    bins_w: u32,
+    bins_h: u32,
+    width: *mut u32,
+    height: *mut u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        // SAFETY: the caller's contract.
+        unsafe { write_size(width, height, moc.compute_bin_size(bins_w, bins_h)) }
+    })
+}
+
+/// # Safety
+/// The pointers are null or can be written.
+unsafe fn write_size(width: *mut u32, height: *mut u32, size: Result<(u32, u32), Error>) -> Result<(), Error> {
+    check_out(width)?;
+    check_out(height)?;
+    let (w, h) = size.unwrap_or((0, 0));
+    // SAFETY: not null, and the caller's contract.
+    unsafe {
+        write(width, w);
+        write(height, h);
+    }
+    size.map(|_| ())
+}
+
+/// Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity: the plane stays where
+/// it was.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, near_w: f32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { object_mut(moc) }?.set_near_clip_plane(near_w))
+}
+
+/// Writes the near plane, in clip-space w.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
+/// null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_GetNearClipPlane(moc: *const MaskedOcclusionCulling, out: *mut f32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { get(moc, out, MaskedOcclusionCulling::near_clip_plane) })
+}
+
+/// Writes the MOC_Implementation that the object uses.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_GetNearClipPlane.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_GetImplementation(moc: *const MaskedOcclusionCulling, out: *mut i32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { get(moc, out, |m| m.implementation() as i32) })
+}
+
+/// Writes the MOC_UpdateRule that the object uses.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_GetNearClipPlane.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_GetUpdateRule(moc: *const MaskedOcclusionCulling, out: *mut i32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { get(moc, out, |m| m.update_rule() as i32) })
+}
+
+/// # Safety
+/// `moc` as for [`object`]; `out` is null or can be written.
+unsafe fn get<T: Copy>(
+    moc: *const MaskedOcclusionCulling,
+    out: *mut T,
+    property: impl FnOnce(&MaskedOcclusionCulling) -> T,
+) -> Result<(), Error> {
+    // SAFETY: the caller's contract.
+    let moc = unsafe { object(moc) }?;
+    check_out(out)?;
+    // SAFETY: not null, and the caller's contract.
+    unsafe { write(out, property(moc)) };
+    Ok(())
+}

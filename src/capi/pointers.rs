@@ -1,0 +1,80 @@
+//! From the caller's pointers to references and slices, with the checks that can be made.
+
+use crate::{Error, MaskedOcclusionCulling};
+
+/// # Safety
+/// Null or from `MOC_Create` and not destroyed, and nobody changes the object meanwhile.
+pub(super) unsafe fn object<'a>(moc: *const MaskedOcclusionCulling) -> Result<&'a MaskedOcclusionCulling, Error> {
+    // SAFETY: the caller's contract.
+    unsafe { moc.as_ref() }.ok_or(Error::NullPointer)
+}
+
+/// # Safety
+/// Null or from `MOC_Create` and not destroyed, and nobody else uses the object meanwhile.
+pub(super) unsafe fn object_mut<'a>(moc: *mut MaskedOcclusionCulling) -> Result<&'a mut MaskedOcclusionCulling, Error> {
+    // SAFETY: the caller's contract.
+    unsafe { moc.as_mut() }.ok_or(Error::NullPointer)
+}
+
+/// `len` elements from `data`, which may be null when there are none.
+///
+/// # Safety
+/// `data` is null or holds `len` elements that nobody changes for `'a`.
+pub(super) unsafe fn slice<'a, T>(data: *const T, len: usize) -> Result<&'a [T], Error> {
+    check_array(data, len)?;
+    if len == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: not null, aligned and not too long, as just checked; the rest is the caller's contract.
+    Ok(unsafe { core::slice::from_raw_parts(data, len) })
+}
+
+/// As [`slice`], to be written.
+///
+/// # Safety
+/// `data` is null or holds `len` elements that nobody else uses for `'a`.
+pub(super) unsafe fn slice_mut<'a, T>(data: *mut T, len: usize) -> Result<&'a mut [T], Error> {
+    check_array(data, len)?;
+    if len == 0 {
+        return Ok(&mut []);
+    }
+    // SAFETY: not null, aligned and not too long, as just checked; the rest is the caller's contract.
+    Ok(unsafe { core::slice::from_raw_parts_mut(data, len) })
+}
+
+fn check_array<T>(data: *const T, len: usize) -> Result<(), Error> {
+    if len == 0 {
+        return Ok(());
+    }
+    if data.is_null() {
+        return Err(Error::NullPointer);
+    }
+    if !data.is_aligned() {
+        return Err(Error::InvalidLayout);
+    }
+    match len.checked_mul(size_of::<T>()) {
+        Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
+        _ => Err(Error::InvalidSize),
+    }
+}
+
+/// What a pointer names, wherever it is aligned; nothing where it is null.
+///
+/// # Safety
+/// `data` is null or can be read.
+pub(super) unsafe fn read<T: Copy>(data: *const T) -> Option<T> {
+    // SAFETY: not null, and the caller's contract.
+    if data.is_null() { None } else { Some(unsafe { data.read_unaligned() }) }
+}
+
+/// # Safety
+/// `out` can be written.
+pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
+    // SAFETY: the caller's contract; C does not promise the alignment.
+    unsafe { out.write_unaligned(value) }
+}
+
+/// Refuses a null out pointer.
+pub(super) fn check_out<T>(out: *mut T) -> Result<(), Error> {
+    if out.is_null() { Err(Error::NullPointer) } else { Ok(()) }
+}

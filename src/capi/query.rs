@@ -1,0 +1,197 @@
+//! What reads the buffer: tests, depth, statistics.
+
+use super::mesh::MeshArguments;
+use super::pointers::{check_out, object, slice_mut, write};
+use super::status::{MOC_Status, guard, guard_result};
+use super::types::{self, MOC_Statistics, MOC_VertexLayout};
+use crate::{Error, MaskedOcclusionCulling};
+
+/// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn?
+///
+/// The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
+/// those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VISIBLE also for
+/// triangles with a NaN or infinite coordinate, and on errors. Several threads may test at once.
+///
+/// Errors: as MOC_RenderTriangles.
+///
+/// # Safety
+/// As MOC_RenderTriangles, but other threads may query `moc` meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_TestTriangles(
+    moc: *const MaskedOcclusionCulling,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { test(moc, mesh, result) }
+}
+
+/// As MOC_TestTriangles, with the length of the vertex array in floats: an index that names a vertex outside
+/// of it is an error.
+///
+/// Errors: as MOC_RenderTrianglesChecked.
+///
+/// # Safety
+/// As MOC_RenderTrianglesChecked, but other threads may query `moc` meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_TestTrianglesChecked(
+    moc: *const MaskedOcclusionCulling,
+    vertices: *const f32,
+    vertex_floats: usize,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: Some(vertex_floats),
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { test(moc, mesh, result) }
+}
+
+/// # Safety
+/// As MOC_TestTriangles, and [`MeshArguments::check`].
+unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: *mut i32) -> MOC_Status {
+    let query = || {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { mesh.check(moc) }?;
+        // SAFETY: the caller's contract: every vertex that is named can be read.
+        unsafe { moc.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest
+/// point is at `wmin`, in clip-space w. Every pixel that it touches counts.
+///
+/// `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a coordinate is NaN, `wmin` is not
+/// positive or the rectangle is empty, and on errors. Several threads may test at once.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `result` is
+/// null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_TestRect(
+    moc: *const MaskedOcclusionCulling,
+    xmin: f32,
+    ymin: f32,
+    xmax: f32,
+    ymax: f32,
+    wmin: f32,
+    result: *mut i32,
+) -> MOC_Status {
+    let query = || {
+        check_out(result)?;
+        // SAFETY: the caller's contract.
+        unsafe { object(moc) }?.test_rect(xmin, ymin, xmax, ymax, wmin)
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
+/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
+/// MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
+/// null or can be written for width times height floats.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ComputePixelDepthBuffer(
+    moc: *const MaskedOcclusionCulling,
+    out: *mut f32,
+    flip_y: i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { depth(moc, out, None, flip_y) })
+}
+
+/// As MOC_ComputePixelDepthBuffer, with the length of `out` in floats.
+///
+/// Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE where `out` is too short.
+///
+/// # Safety
+/// As MOC_ComputePixelDepthBuffer, where `out` can be written for `out_floats` floats.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ComputePixelDepthBufferChecked(
+    moc: *const MaskedOcclusionCulling,
+    out: *mut f32,
+    out_floats: usize,
+    flip_y: i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { depth(moc, out, Some(out_floats), flip_y) })
+}
+
+/// # Safety
+/// As MOC_ComputePixelDepthBuffer; `out` is null or can be written for `floats` floats, where given.
+unsafe fn depth(
+    moc: *const MaskedOcclusionCulling,
+    out: *mut f32,
+    floats: Option<usize>,
+    flip_y: i32,
+) -> Result<(), Error> {
+    // SAFETY: the caller's contract.
+    let moc = unsafe { object(moc) }?;
+    check_out(out)?;
+    let flip_y = types::flag(flip_y)?;
+    let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
+    let pixels = width as usize * height as usize;
+    if floats.is_some_and(|floats| floats < pixels) {
+        return Err(Error::InvalidSize);
+    }
+    // SAFETY: at least `pixels` floats, as just checked or by the caller's contract.
+    moc.compute_pixel_depth_buffer(unsafe { slice_mut(out, pixels) }?, flip_y)
+}
+
+/// Writes what was counted since the object was made.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed. `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, out: *mut MOC_Statistics) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        check_out(out)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, moc.statistics().into()) };
+        Ok(())
+    })
+}

@@ -1,0 +1,158 @@
+//! What every function returns, and the version of the interface.
+
+use core::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::pointers::write;
+use crate::{CullingResult, Error};
+
+/// The version of this interface: 1000 * major + minor of the library's version.
+///
+/// Compare it with MOC_AbiVersion() to see that header and library belong together: before version
+/// 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
+/// header's.
+pub const MOC_ABI_VERSION: u32 = 1;
+
+/// What a call reports. Where it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the
+/// function says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum MOC_Status {
+    /// Done.
+    MOC_STATUS_OK = 0,
+    /// A pointer that has to name something is null.
+    MOC_STATUS_NULL_POINTER = 1,
+    /// An integer that stands for an enumeration or a flag has no meaning there.
+    MOC_STATUS_INVALID_ENUM = 2,
+    /// A width, height, bin count, triangle count, array length or rectangle is outside of what is accepted.
+    MOC_STATUS_INVALID_SIZE = 3,
+    /// A number that has to be finite is not.
+    MOC_STATUS_INVALID_NUMBER = 4,
+    /// A vertex layout has a negative stride or, where the length of the array is given, a negative
+    /// offset; or a pointer is not a multiple of what it points to (4 bytes for indices and floats
+    /// that are written, 8 for lists).
+    MOC_STATUS_INVALID_LAYOUT = 5,
+    /// The object has no buffer: call MOC_SetResolution first.
+    MOC_STATUS_NO_BUFFER = 6,
+    /// An index names a vertex that is not there.
+    MOC_STATUS_INDEX_OUT_OF_RANGE = 7,
+    /// The two buffers differ in resolution or in the direction of their rows.
+    MOC_STATUS_SIZE_MISMATCH = 8,
+    /// A triangle list was full. The triangles that fitted are in the lists.
+    MOC_STATUS_LIST_FULL = 9,
+    /// The allocator returned nothing.
+    MOC_STATUS_OUT_OF_MEMORY = 10,
+    /// The library failed inside. No memory was harmed, but the call did not finish.
+    MOC_STATUS_INTERNAL = 11,
+}
+
+impl From<Error> for MOC_Status {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::NullPointer => Self::MOC_STATUS_NULL_POINTER,
+            Error::InvalidEnum => Self::MOC_STATUS_INVALID_ENUM,
+            Error::InvalidSize => Self::MOC_STATUS_INVALID_SIZE,
+            Error::InvalidNumber => Self::MOC_STATUS_INVALID_NUMBER,
+            Error::InvalidLayout => Self::MOC_STATUS_INVALID_LAYOUT,
+            Error::NoBuffer => Self::MOC_STATUS_NO_BUFFER,
+            Error::IndexOutOfRange => Self::MOC_STATUS_INDEX_OUT_OF_RANGE,
+            Error::SizeMismatch => Self::MOC_STATUS_SIZE_MISMATCH,
+            Error::ListFull => Self::MOC_STATUS_LIST_FULL,
+            Error::OutOfMemory => Self::MOC_STATUS_OUT_OF_MEMORY,
+            Error::Internal => Self::MOC_STATUS_INTERNAL,
+        }
+    }
+}
+
+/// One text a status, in their order.
+const TEXTS: [&CStr; 12] = [
+    c"done",
+    c"a pointer that has to name something is null",
+    c"an enumeration has no such value",
+    c"a size, count or rectangle is outside of what is accepted",
+    c"a number that has to be finite is not",
+    c"the vertex layout reaches outside of the vertices",
+    c"no buffer: the resolution was never set",
+    c"an index names a vertex that is not there",
+    c"the two buffers differ in resolution or row direction",
+    c"a triangle list is full",
+    c"out of memory",
+    c"the library failed inside",
+];
+
+/// The MOC_ABI_VERSION that the library was built with.
+#[unsafe(no_mangle)]
+pub extern "C" fn MOC_AbiVersion() -> u32 {
+    MOC_ABI_VERSION
+}
+
+/// A status in English, for logs. Never null; the text lives as long as the library is loaded.
+#[unsafe(no_mangle)]
+pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
+    let text = usize::try_from(status).ok().and_then(|i| TEXTS.get(i));
+    text.map_or(c"not a status of this library", |t| t).as_ptr()
+}
+
+/// Runs the body of an exported function; a panic becomes a status.
+pub(super) fn guard(body: impl FnOnce() -> Result<(), Error>) -> MOC_Status {
+    match catch_unwind(AssertUnwindSafe(body)) {
+        Ok(Ok(())) => MOC_Status::MOC_STATUS_OK,
+        Ok(Err(error)) => error.into(),
+        Err(payload) => {
+            // Dropping what was thrown could panic again.
+            core::mem::forget(payload);
+            MOC_Status::MOC_STATUS_INTERNAL
+        }
+    }
+}
+
+/// As [`guard`], for calls that answer: `result` gets the answer, or "visible" where there is none.
+///
+/// # Safety
+/// `result` is null or can be written.
+pub(super) unsafe fn guard_result(result: *mut i32, body: impl FnOnce() -> Result<CullingResult, Error>) -> MOC_Status {
+    let mut answer = CullingResult::Visible;
+    let status = guard(|| {
+        answer = body()?;
+        Ok(())
+    });
+    if !result.is_null() {
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(result, answer as i32) };
+    }
+    status
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_has_its_own_status_and_text() {
+        let errors = [
+            Error::NullPointer,
+            Error::InvalidEnum,
+            Error::InvalidSize,
+            Error::InvalidNumber,
+            Error::InvalidLayout,
+            Error::NoBuffer,
+            Error::IndexOutOfRange,
+            Error::SizeMismatch,
+            Error::ListFull,
+            Error::OutOfMemory,
+            Error::Internal,
+        ];
+        for (i, error) in errors.into_iter().enumerate() {
+            assert_eq!(MOC_Status::from(error) as usize, i + 1);
+            assert_eq!(TEXTS[i + 1].to_str().unwrap(), error.to_string());
+        }
+    }
+
+    #[test]
+    fn a_panic_becomes_a_status_and_the_answer_visible() {
+        let mut result = 7;
+        // SAFETY: `result` is a local.
+        let status = unsafe { guard_result(&mut result, || panic!("on purpose")) };
+        assert_eq!((status, result), (MOC_Status::MOC_STATUS_INTERNAL, 0));
+    }
+}

@@ -1,0 +1,48 @@
+//! Transforming vertices to clip space.
+
+use super::pointers::read;
+use super::status::{MOC_Status, guard};
+use super::types::MOC_VertexLayout;
+use crate::vertices::VertexSource;
+use crate::{Error, VertexLayout};
+
+/// Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
+/// writes them to `out` as packed x, y, z, w, 16 bytes a vertex.
+///
+/// `vertices` points to the x of the first; `layout` says where the others are (null: x, y, z packed, 12
+/// bytes a vertex), its last offset names z. All pointers may lie at any address.
+///
+/// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
+/// MOC_STATUS_INVALID_LAYOUT for a negative stride.
+///
+/// # Safety
+/// `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
+/// 4 * `n_vertices` floats, and does not overlap the vertices.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_TransformVertices(
+    matrix: *const f32,
+    vertices: *const f32,
+    out: *mut f32,
+    n_vertices: u32,
+    layout: *const MOC_VertexLayout,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let matrix = unsafe { read(matrix.cast::<[f32; 16]>()) }.ok_or(Error::NullPointer)?;
+        // SAFETY: the caller's contract.
+        let layout = unsafe { read(layout) }.map_or(VertexLayout::POSITIONS, VertexLayout::from);
+        if layout.stride < 0 {
+            return Err(Error::InvalidLayout);
+        }
+        if n_vertices == 0 {
+            return Ok(());
+        }
+        if vertices.is_null() || out.is_null() {
+            return Err(Error::NullPointer);
+        }
+        let source = VertexSource { base: vertices.cast(), layout };
+        // SAFETY: the caller's contract: so many vertices can be read and written.
+        unsafe { crate::transform::transform_raw(&glam::Mat4::from_cols_array(&matrix), source, out, n_vertices as usize) };
+        Ok(())
+    })
+}

@@ -1,0 +1,321 @@
+//! The enumerations and structs of the C interface, and how they become those of the Rust API.
+
+use core::ffi::c_void;
+
+use crate::{
+    BackfaceWinding, ClipPlanes, Error, Implementation, ScissorRect, Statistics, TriList, UpdateRule, VertexLayout,
+    YAxis,
+};
+
+/// An instruction set. All of them give the same bits.
+#[repr(i32)]
+pub enum MOC_Implementation {
+    /// No vector instructions by name: runs anywhere.
+    MOC_SCALAR = -1,
+    /// x86-64 baseline.
+    MOC_SSE2 = 0,
+    /// SSE4.1 (with SSSE3's byte shuffle).
+    MOC_SSE41 = 1,
+    /// AVX2.
+    MOC_AVX2 = 2,
+    /// AVX-512 F, BW, DQ and VL.
+    MOC_AVX512 = 3,
+    /// aarch64's Advanced SIMD.
+    MOC_NEON = 16,
+}
+
+/// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+#[repr(i32)]
+pub enum MOC_UpdateRule {
+    /// One reference depth and two working layers: the most accurate, in any order. The default.
+    MOC_UPDATE_RULE_THREE_LAYER = 0,
+    /// Hasselgren, Andersson, Akenine-Moller: "Masked Software Occlusion Culling", 2016.
+    MOC_UPDATE_RULE_QUICK = 1,
+    /// After Andersson, Hasselgren, Akenine-Moller: "Masked Depth Culling for Graphics Hardware", 2015.
+    MOC_UPDATE_RULE_ACCURATE = 2,
+}
+
+/// The direction in which screen rows are counted.
+#[repr(i32)]
+pub enum MOC_YAxis {
+    /// Row 0 is the top of the screen (Direct3D, Vulkan, Metal). The default.
+    MOC_Y_AXIS_DOWN = 0,
+    /// Row 0 is the bottom of the screen (OpenGL).
+    MOC_Y_AXIS_UP = 1,
+}
+
+/// Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+#[repr(i32)]
+pub enum MOC_BackfaceWinding {
+    /// None: both sides count.
+    MOC_BACKFACE_NONE = 0,
+    /// Clockwise triangles face away.
+    MOC_BACKFACE_CW = 1,
+    /// Counter-clockwise triangles face away.
+    MOC_BACKFACE_CCW = 2,
+}
+
+/// What a draw or a query found.
+#[repr(i32)]
+pub enum MOC_CullingResult {
+    /// It may be seen.
+    MOC_VISIBLE = 0,
+    /// It is certainly hidden by what was drawn.
+    MOC_OCCLUDED = 1,
+    /// It lies outside of the view, or faces away.
+    MOC_VIEW_CULLED = 3,
+}
+
+/// The frustum planes that a mesh may cross: flags, to be combined with `|`.
+///
+/// Only MOC_CLIP_PLANE_NEAR changes anything: without it the near plane of the object is not applied
+/// (what lies behind the eye is never drawn). Leaving out side planes is always safe and never faster.
+#[repr(i32)]
+pub enum MOC_ClipPlanes {
+    /// No plane.
+    MOC_CLIP_PLANE_NONE = 0x00,
+    /// The near plane of MOC_SetNearClipPlane.
+    MOC_CLIP_PLANE_NEAR = 0x01,
+    /// x = -w.
+    MOC_CLIP_PLANE_LEFT = 0x02,
+    /// x = w.
+    MOC_CLIP_PLANE_RIGHT = 0x04,
+    /// y = -w.
+    MOC_CLIP_PLANE_BOTTOM = 0x08,
+    /// y = w.
+    MOC_CLIP_PLANE_TOP = 0x10,
+    /// The four side planes.
+    MOC_CLIP_PLANE_SIDES = 0x1e,
+    /// All five.
+    MOC_CLIP_PLANE_ALL = 0x1f,
+}
+
+/// Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it); null
+/// when there is no memory. Called from any thread that uses the object; must not throw.
+pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void>;
+
+/// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
+pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
+
+/// What an object is made with. Fill it with MOC_DefaultSettings first, then change what matters.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_Settings {
+    /// A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. On another
+    /// architecture than the named one, anything but MOC_SCALAR permits the best that there is.
+    pub implementation: i32,
+    /// A MOC_UpdateRule. Default MOC_UPDATE_RULE_THREE_LAYER.
+    pub update_rule: i32,
+    /// A MOC_YAxis. Default MOC_Y_AXIS_DOWN.
+    pub y_axis: i32,
+    /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
+    pub precise_coverage: i32,
+    /// Where all memory of the object comes from. Null, together with `free`: the system. Default null.
+    pub alloc: MOC_AlignedAlloc,
+    /// Takes back what `alloc` gave. Null exactly when `alloc` is.
+    pub free: MOC_AlignedFree,
+}
+
+/// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
+///
+/// Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a
+/// matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n).
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_VertexLayout {
+    /// Bytes from one vertex to the next; not negative.
+    pub stride: i32,
+    /// Bytes from x to y.
+    pub offset_y: i32,
+    /// Bytes from x to w; with a matrix, from x to z.
+    pub offset_zw: i32,
+}
+
+/// A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
+/// maximum may also be the width or height of the buffer.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_ScissorRect {
+    /// First column.
+    pub min_x: i32,
+    /// First row.
+    pub min_y: i32,
+    /// Column after the last.
+    pub max_x: i32,
+    /// Row after the last.
+    pub max_y: i32,
+}
+
+/// A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it,
+/// MOC_RenderTrilist draws it.
+#[repr(C)]
+pub struct MOC_TriList {
+    /// How many triangles `data` can hold.
+    pub capacity: u32,
+    /// How many it holds. Set it to 0 to start over.
+    pub count: u32,
+    /// 9 floats a triangle.
+    pub data: *mut f32,
+}
+
+/// Counts of what draws did since the object was made.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_OccluderStatistics {
+    /// Triangles submitted to be drawn or binned, and those of drawn lists.
+    pub num_processed_triangles: i64,
+    /// Those that face the eye, lie in view and hold a pixel centre.
+    pub num_rasterized_triangles: i64,
+    /// 32x8 tiles that such triangles reach and that were not nearer already.
+    pub num_tiles_traversed: i64,
+    /// Tiles in which a triangle changed, or could have changed, a sub-tile.
+    pub num_tiles_updated: i64,
+    /// Tiles in which a reference depth rose.
+    pub num_tiles_merged: i64,
+    /// Triangles dropped for a NaN, an infinite coordinate, or a distance beyond 2^40.
+    pub num_dropped_triangles: i64,
+}
+
+/// Counts of what queries did since the object was made.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_OccludeeStatistics {
+    /// Rectangles tested.
+    pub num_processed_rectangles: i64,
+    /// Triangles submitted to be tested.
+    pub num_processed_triangles: i64,
+    /// Those of them that were compared with the buffer.
+    pub num_rasterized_triangles: i64,
+    /// Tiles that rectangles and triangles were compared with.
+    pub num_tiles_traversed: i64,
+}
+
+/// All counts of an object. Gathered always; the same on every instruction set.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_Statistics {
+    /// Of draws.
+    pub occluders: MOC_OccluderStatistics,
+    /// Of queries.
+    pub occludees: MOC_OccludeeStatistics,
+}
+
+impl From<MOC_VertexLayout> for VertexLayout {
+    fn from(l: MOC_VertexLayout) -> Self {
+        Self::new(l.stride, l.offset_y, l.offset_zw)
+    }
+}
+
+impl From<MOC_ScissorRect> for ScissorRect {
+    fn from(r: MOC_ScissorRect) -> Self {
+        Self { min_x: r.min_x, min_y: r.min_y, max_x: r.max_x, max_y: r.max_y }
+    }
+}
+
+impl From<Statistics> for MOC_Statistics {
+    fn from(s: Statistics) -> Self {
+        Self {
+            occluders: MOC_OccluderStatistics {
+                num_processed_triangles: s.occluders.num_processed_triangles,
+                num_rasterized_triangles: s.occluders.num_rasterized_triangles,
+                num_tiles_traversed: s.occluders.num_tiles_traversed,
+                num_tiles_updated: s.occluders.num_tiles_updated,
+                num_tiles_merged: s.occluders.num_tiles_merged,
+                num_dropped_triangles: s.occluders.num_dropped_triangles,
+            },
+            occludees: MOC_OccludeeStatistics {
+                num_processed_rectangles: s.occludees.num_processed_rectangles,
+                num_processed_triangles: s.occludees.num_processed_triangles,
+                num_rasterized_triangles: s.occludees.num_rasterized_triangles,
+                num_tiles_traversed: s.occludees.num_tiles_traversed,
+            },
+        }
+    }
+}
+
+// A pointer to a C list is used as a pointer to a Rust list.
+const _: () = {
+    assert!(size_of::<MOC_TriList>() == size_of::<TriList<'_>>());
+    assert!(align_of::<MOC_TriList>() == align_of::<TriList<'_>>());
+    assert!(core::mem::offset_of!(MOC_TriList, capacity) == core::mem::offset_of!(TriList<'_>, capacity));
+    assert!(core::mem::offset_of!(MOC_TriList, count) == core::mem::offset_of!(TriList<'_>, len));
+    assert!(core::mem::offset_of!(MOC_TriList, data) == core::mem::offset_of!(TriList<'_>, data));
+};
+
+// The integers of C are those of the Rust enumerations.
+const _: () = {
+    assert!(MOC_Implementation::MOC_SCALAR as i32 == Implementation::Scalar as i32);
+    assert!(MOC_Implementation::MOC_SSE2 as i32 == Implementation::Sse2 as i32);
+    assert!(MOC_Implementation::MOC_SSE41 as i32 == Implementation::Sse41 as i32);
+    assert!(MOC_Implementation::MOC_AVX2 as i32 == Implementation::Avx2 as i32);
+    assert!(MOC_Implementation::MOC_AVX512 as i32 == Implementation::Avx512 as i32);
+    assert!(MOC_Implementation::MOC_NEON as i32 == Implementation::Neon as i32);
+    assert!(MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32 == UpdateRule::ThreeLayer as i32);
+    assert!(MOC_UpdateRule::MOC_UPDATE_RULE_QUICK as i32 == UpdateRule::Quick as i32);
+    assert!(MOC_UpdateRule::MOC_UPDATE_RULE_ACCURATE as i32 == UpdateRule::Accurate as i32);
+    assert!(MOC_YAxis::MOC_Y_AXIS_DOWN as i32 == YAxis::Down as i32);
+    assert!(MOC_YAxis::MOC_Y_AXIS_UP as i32 == YAxis::Up as i32);
+    assert!(MOC_BackfaceWinding::MOC_BACKFACE_NONE as i32 == BackfaceWinding::None as i32);
+    assert!(MOC_BackfaceWinding::MOC_BACKFACE_CW as i32 == BackfaceWinding::Clockwise as i32);
+    assert!(MOC_BackfaceWinding::MOC_BACKFACE_CCW as i32 == BackfaceWinding::CounterClockwise as i32);
+    assert!(MOC_CullingResult::MOC_VISIBLE as i32 == crate::CullingResult::Visible as i32);
+    assert!(MOC_CullingResult::MOC_OCCLUDED as i32 == crate::CullingResult::Occluded as i32);
+    assert!(MOC_CullingResult::MOC_VIEW_CULLED as i32 == crate::CullingResult::ViewCulled as i32);
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_NEAR as u32 == ClipPlanes::NEAR.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_LEFT as u32 == ClipPlanes::LEFT.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_RIGHT as u32 == ClipPlanes::RIGHT.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_BOTTOM as u32 == ClipPlanes::BOTTOM.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_TOP as u32 == ClipPlanes::TOP.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_SIDES as u32 == ClipPlanes::SIDES.bits());
+    assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_ALL as u32 == ClipPlanes::ALL.bits());
+};
+
+pub(super) fn implementation(value: i32) -> Result<Implementation, Error> {
+    Ok(match value {
+        -1 => Implementation::Scalar,
+        0 => Implementation::Sse2,
+        1 => Implementation::Sse41,
+        2 => Implementation::Avx2,
+        3 => Implementation::Avx512,
+        16 => Implementation::Neon,
+        _ => return Err(Error::InvalidEnum),
+    })
+}
+
+pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Error> {
+    Ok(match value {
+        0 => UpdateRule::ThreeLayer,
+        1 => UpdateRule::Quick,
+        2 => UpdateRule::Accurate,
+        _ => return Err(Error::InvalidEnum),
+    })
+}
+
+pub(super) fn y_axis(value: i32) -> Result<YAxis, Error> {
+    Ok(match value {
+        0 => YAxis::Down,
+        1 => YAxis::Up,
+        _ => return Err(Error::InvalidEnum),
+    })
+}
+
+pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Error> {
+    Ok(match value {
+        0 => BackfaceWinding::None,
+        1 => BackfaceWinding::Clockwise,
+        2 => BackfaceWinding::CounterClockwise,
+        _ => return Err(Error::InvalidEnum),
+    })
+}
+
+pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Error> {
+    u32::try_from(value).ok().and_then(ClipPlanes::from_bits).ok_or(Error::InvalidEnum)
+}
+
+pub(super) fn flag(value: i32) -> Result<bool, Error> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Error::InvalidEnum),
+    }
+}
