@@ -43,7 +43,7 @@ fn compare(
         // Nothing that is drawn is nearer than the near plane.
         let here = exact.depth(column, row) + TOLERANCE * exact.slope();
         let most = if near > 0.0 { here.min(f64::from(1.0 / near) * (1.0 + 1e-6)) } else { here };
-        if stored.is_nan() || f64::from(stored) > most * (1.0 + 1e-6) {
+        if !is_empty(stored) && (stored.is_nan() || f64::from(stored) > most * (1.0 + 1e-6)) {
             return fail(&format!("is too near: {stored:e}, at most {most:e}"));
         }
     }

@@ -87,7 +87,7 @@ fn every_instruction_set_gives_the_golden_bits() {
             for (i, &implementation) in Implementation::available().iter().enumerate() {
                 let got = hashes(scene, implementation, rule);
                 if print && i == 0 {
-                    println!("{} {rule:?}: [{:#018x}, {:#018x}, {:#018x}],", scene.name, got[0], got[1], got[2]);
+                    println!("[{:#018x}, {:#018x}, {:#018x}], // {} {rule:?}", got[0], got[1], got[2], scene.name);
                 }
                 for (part, what) in ["buffer", "answers", "statistics"].into_iter().enumerate() {
                     if got[part] != golden[part] {
