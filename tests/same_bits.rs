@@ -1,0 +1,179 @@
+//! Buffer, answers and statistics are the same bits on every instruction set, and the same on every architecture:
+//! the hashes of generated scenes are equal and are those in this file. A change that means to change the bits
+//! prints the new ones with PRINT_HASHES=1 cargo test --test same_bits -- --nocapture.
+
+mod scenes;
+
+use glam::Mat4;
+use masked_occlusion_culling::{
+    Allocator, BackfaceWinding, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, Statistics, UpdateRule,
+    VertexLayout, Vertices, YAxis,
+};
+use scenes::Scene;
+
+/// FNV-1a.
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, value: u64) {
+        for byte in value.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    }
+}
+
+fn add_statistics(hash: &mut Hash, s: &Statistics) {
+    let (o, q) = (&s.occluders, &s.occludees);
+    let counts = [
+        o.num_processed_triangles,
+        o.num_rasterized_triangles,
+        o.num_tiles_traversed,
+        o.num_tiles_updated,
+        o.num_tiles_merged,
+        o.num_dropped_triangles,
+        q.num_processed_rectangles,
+        q.num_processed_triangles,
+        q.num_rasterized_triangles,
+        q.num_tiles_traversed,
+    ];
+    counts.iter().for_each(|n| hash.add(*n as u64));
+}
+
+/// Hashes of the buffer, of the answers and of the statistics.
+fn hashes(scene: &Scene, implementation: Implementation, rule: UpdateRule) -> [u64; 3] {
+    let (w, h) = (333, 205);
+    let mut all = [Hash::new(), Hash::new(), Hash::new()];
+    let [buffer, answers, statistics] = &mut all;
+    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
+    let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
+    let mut depth = vec![0.0; w * h];
+    for y_axis in [YAxis::Down, YAxis::Up] {
+        for winding in [BackfaceWinding::Clockwise, BackfaceWinding::None] {
+            let settings = Settings { implementation, update_rule: rule, y_axis, allocator: Allocator::SYSTEM };
+            let mut moc = MaskedOcclusionCulling::new(settings);
+            moc.set_resolution(w as u32, h as u32).unwrap();
+            moc.set_near_clip_plane(scene.near).unwrap();
+            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
+            let options = DrawOptions { model_to_clip, winding, ..DrawOptions::default() };
+            for object in &scene.objects {
+                let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
+                answers.add(moc.test_rect(x0, y0, x1, y1, nearest).unwrap() as u64);
+                answers.add(moc.test_triangles(vertices, object, &options).unwrap() as u64);
+                answers.add(moc.render_triangles(vertices, object, &options).unwrap() as u64);
+            }
+            moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+            depth.iter().for_each(|d| buffer.add(u64::from(d.to_bits())));
+            add_statistics(statistics, &moc.statistics());
+        }
+    }
+    all.map(|h| h.0)
+}
+
+const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+
+/// By scene, then rule: buffer, answers, statistics.
+const GOLDEN: [[[u64; 3]; 3]; 5] = [
+    [
+        // town
+        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0xcb6f_936c_3a86_5af9],
+        [0xd10c_2774_2c83_9a2c, 0x51e5_8a0e_414a_5165, 0xf402_7c09_10ef_0fb2],
+        [0xe32f_8db6_fea7_855b, 0xacab_951a_54f7_c5a5, 0x57ec_12be_9e5d_d509],
+    ],
+    [
+        // terrain
+        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0xefb3_25fe_fe75_342f],
+        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x56ca_10a2_67fa_5138],
+        [0x8c20_dc61_71be_33ef, 0x5ed9_7ef0_70f1_8fe4, 0x2e40_e6e6_1d8c_8804],
+    ],
+    [
+        // blocks
+        [0x0c8d_a2a7_0155_16f5, 0x9661_0878_3e74_21a5, 0x45ff_9b5e_65be_fab1],
+        [0xf20a_ba6f_c07f_df88, 0x1602_cffc_ed45_d625, 0x3bb4_7ebd_db4c_68a1],
+        [0xd3b6_e35a_c933_5150, 0x5bbc_fa2f_de7b_3625, 0xe260_3826_2d29_737a],
+    ],
+    [
+        // soup
+        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xa213_7b37_47a0_bb1a],
+        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x89e8_39dd_ba53_af7e],
+        [0x463e_29e8_ae50_2aff, 0x4b17_30e4_8282_8d25, 0xbfd7_dbe7_69a0_5706],
+    ],
+    [
+        // hostile
+        [0xb995_c810_2633_9d73, 0x2e76_abae_8eb4_9ba5, 0x4bd7_8ce2_8514_e7e7],
+        [0x8b61_6c1b_fa11_30a9, 0x2e76_abae_8eb4_9ba5, 0x8423_f103_c1aa_62e5],
+        [0xc3c9_3141_42a0_f709, 0x2e76_abae_8eb4_9ba5, 0x4bd7_8ce2_8514_e7e7],
+    ],
+];
+
+#[test]
+fn every_instruction_set_gives_the_golden_bits() {
+    let print = std::env::var_os("PRINT_HASHES").is_some();
+    let mut wrong = Vec::new();
+    for (scene, golden) in scenes::all().iter().zip(&GOLDEN) {
+        for (rule, golden) in RULES.into_iter().zip(golden) {
+            for (i, &implementation) in Implementation::available().iter().enumerate() {
+                let got = hashes(scene, implementation, rule);
+                if print && i == 0 {
+                    println!("[{:#018x}, {:#018x}, {:#018x}], // {} {rule:?}", got[0], got[1], got[2], scene.name);
+                }
+                for (part, what) in ["buffer", "answers", "statistics"].into_iter().enumerate() {
+                    if got[part] != golden[part] {
+                        wrong.push(format!("{} {rule:?} {implementation:?}: {what} {:#018x}", scene.name, got[part]));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "other hashes than those in this file:\n{}", wrong.join("\n"));
+}
+
+/// What differs, pixel by pixel, when the hashes do: the first object whose drawing parts two instruction sets.
+#[test]
+fn every_instruction_set_agrees_after_every_object() {
+    let (w, h) = (160, 90);
+    for scene in scenes::all() {
+        for rule in RULES {
+            let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
+            let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
+            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
+            let options = DrawOptions { model_to_clip, ..DrawOptions::default() };
+            let mut objects: Vec<_> = Implementation::available()
+                .iter()
+                .map(|&implementation| {
+                    let settings = Settings { implementation, update_rule: rule, ..Settings::default() };
+                    let mut moc = MaskedOcclusionCulling::new(settings);
+                    moc.set_resolution(w, h).unwrap();
+                    moc.set_near_clip_plane(scene.near).unwrap();
+                    moc
+                })
+                .collect();
+            let mut buffers = vec![vec![0.0f32; (w * h) as usize]; objects.len()];
+            for (i, object) in scene.objects.iter().enumerate() {
+                for (moc, depth) in objects.iter_mut().zip(&mut buffers) {
+                    moc.render_triangles(vertices, object, &options).unwrap();
+                    moc.compute_pixel_depth_buffer(depth, false).unwrap();
+                }
+                for (moc, depth) in objects.iter().zip(&buffers).skip(1) {
+                    let differs = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits();
+                    if let Some(p) = depth.iter().zip(&buffers[0]).position(differs) {
+                        panic!(
+                            "{} {rule:?}, object {i}: ({}, {}) is {:e} with {:?}, {:e} with {:?}",
+                            scene.name,
+                            p % w as usize,
+                            p / w as usize,
+                            depth[p],
+                            moc.implementation(),
+                            buffers[0][p],
+                            objects[0].implementation()
+                        );
+                    }
+                    assert_eq!(moc.statistics(), objects[0].statistics(), "{} {rule:?}, object {i}", scene.name);
+                }
+            }
+        }
+    }
+}
