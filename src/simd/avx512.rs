@@ -107,6 +107,25 @@ impl Simd for Avx512Tile {
         }
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [__m256; 4] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            // Vertices k and k + 4 in the halves of one register.
+            let a = _mm256_set_m128(_mm_loadu_ps(p.add(16)), _mm_loadu_ps(p));
+            let b = _mm256_set_m128(_mm_loadu_ps(p.add(20)), _mm_loadu_ps(p.add(4)));
+            let c = _mm256_set_m128(_mm_loadu_ps(p.add(24)), _mm_loadu_ps(p.add(8)));
+            let d = _mm256_set_m128(_mm_loadu_ps(p.add(28)), _mm_loadu_ps(p.add(12)));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ]
+        }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __mmask8, x: __m256i) -> usize {
         // SAFETY: the token, and the caller's contract.
         unsafe {
@@ -450,6 +469,25 @@ impl Simd for Avx512Wide {
             let upper = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19, 22, 25, 28, 31);
             let third = _mm512_permutex2var_epi32(_mm512_permutex2var_epi32(a, lower, b), upper, c);
             [first, second, third]
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [__m512; 4] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (a, b) = (_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16)));
+            let (c, d) = (_mm512_loadu_ps(p.add(32)), _mm512_loadu_ps(p.add(48)));
+            // Eight firsts, then eight seconds; likewise thirds and fourths.
+            let low = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+            let high = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31);
+            let (ab, cd) = (_mm512_permutex2var_ps(a, low, b), _mm512_permutex2var_ps(c, low, d));
+            let (ab_high, cd_high) = (_mm512_permutex2var_ps(a, high, b), _mm512_permutex2var_ps(c, high, d));
+            [
+                _mm512_shuffle_f32x4::<0b01_00_01_00>(ab, cd),
+                _mm512_shuffle_f32x4::<0b11_10_11_10>(ab, cd),
+                _mm512_shuffle_f32x4::<0b01_00_01_00>(ab_high, cd_high),
+                _mm512_shuffle_f32x4::<0b11_10_11_10>(ab_high, cd_high),
+            ]
         }
     }
     #[inline(always)]

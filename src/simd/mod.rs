@@ -70,6 +70,10 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// `p` can be read for `3 * LANES` indices.
     unsafe fn load_triangles(self, p: *const u32) -> [Self::I; 3];
+    /// `LANES` packed groups of four floats: the first of each, the second of each, and so on.
+    /// # Safety
+    /// `p` can be read for `4 * LANES` floats; any alignment.
+    unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4];
     /// Writes the lanes in `m` to `p` without gaps and returns their number.
     /// # Safety
     /// `p` can be written for `LANES` values, whatever the mask.

@@ -138,6 +138,22 @@ impl Simd for Sse2 {
         }
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [__m128; 4] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (a, b, c, d) =
+                (_mm_loadu_ps(p), _mm_loadu_ps(p.add(4)), _mm_loadu_ps(p.add(8)), _mm_loadu_ps(p.add(12)));
+            let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+            [
+                _mm_movelh_ps(ab, cd),
+                _mm_movehl_ps(cd, ab),
+                _mm_movelh_ps(ab_high, cd_high),
+                _mm_movehl_ps(cd_high, ab_high),
+            ]
+        }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m128, x: __m128i) -> usize {
         // SAFETY: the token, and the caller's contract.
         unsafe {
@@ -481,6 +497,22 @@ impl Simd for Sse41 {
             );
             let c = _mm_shuffle_ps::<0b11_00_10_00>(_mm_shuffle_ps::<0b01_01_10_10>(x, y), z);
             [_mm_castps_si128(a), _mm_castps_si128(b), _mm_castps_si128(c)]
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [__m128; 4] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (a, b, c, d) =
+                (_mm_loadu_ps(p), _mm_loadu_ps(p.add(4)), _mm_loadu_ps(p.add(8)), _mm_loadu_ps(p.add(12)));
+            let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+            [
+                _mm_movelh_ps(ab, cd),
+                _mm_movehl_ps(cd, ab),
+                _mm_movelh_ps(ab_high, cd_high),
+                _mm_movehl_ps(cd_high, ab_high),
+            ]
         }
     }
     #[inline(always)]
