@@ -134,8 +134,8 @@ fn from_above(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) 
     let ahead = (camera.look - camera.eye).reject_from_normalized(camera.up);
     let ahead = ahead.try_normalize().unwrap_or(camera.up.any_orthonormal_vector());
     let side = ahead.cross(camera.up);
-    let into = camera.up.cross(ahead * 0.94 + side * 0.34);
-    let direction = (into * 0.62 - camera.up).normalize();
+    let into = camera.up.cross(ahead * 0.8 + side * 0.6);
+    let direction = (into * 0.9 - camera.up).normalize();
     let mut points = vec![camera.eye];
     for (object, _) in scene.objects.iter().zip(&outcome.fates).filter(|(_, f)| **f != Fate::Outside) {
         points.extend(box_corners(object.lo, object.hi));
@@ -146,10 +146,10 @@ fn from_above(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) 
         let mut buffer = ZBuffer::new(WIDTH * 2, HEIGHT * 2);
         draw(&mut buffer, scene, &clip, f32::NEG_INFINITY, |i| wanted(outcome.fates[i]));
         let paint = |i: usize, colour: Vec3| {
-            let grey = 0.55 + 0.45 * colour.dot(Vec3::new(0.3, 0.59, 0.11));
+            let grey = 0.35 + 0.65 * colour.dot(Vec3::new(0.3, 0.59, 0.11));
             grey * match outcome.fates[i] {
                 Fate::Visible => DRAWN,
-                Fate::Culled => CULLED,
+                Fate::Culled => CULLED * 0.9,
                 Fate::Outside => Vec3::splat(0.3),
             }
         };

@@ -5,7 +5,7 @@ use glam::{Mat4, Vec2, Vec3, vec2, vec3};
 use crate::scene::{Mesh, Scene};
 
 /// Blocks in each direction.
-const BLOCKS: i32 = 11;
+const BLOCKS: i32 = 9;
 /// The block without houses: the square.
 const SQUARE: i32 = BLOCKS / 2;
 /// From one street's middle to the next one's, in metres.
@@ -18,10 +18,10 @@ const DEPTH: f32 = 10.0;
 
 /// Where the default camera stands and looks.
 pub fn camera() -> (Vec3, Vec3) {
-    let street = (SQUARE as f32 + 1.0 - BLOCKS as f32 / 2.0) * PITCH;
-    let stand = bend(vec2(street - 1.2, 2.62 * PITCH));
-    let ahead = bend(vec2(street - 3.0, 0.4 * PITCH));
-    (vec3(stand.x, 3.0, stand.y), vec3(ahead.x, 6.5, ahead.y))
+    let street = PITCH / 2.0;
+    let stand = bend(vec2(street + 2.0, 1.02 * PITCH));
+    let ahead = bend(vec2(street - 15.0, 0.1 * PITCH));
+    (vec3(stand.x, 3.6, stand.y), vec3(ahead.x, 11.0, ahead.y))
 }
 
 /// The town.
@@ -215,13 +215,10 @@ impl Town {
             }
         }
         trim.cuboid(vec3(-w, eaves - 0.25, d), vec3(w, eaves, d + 0.3), frame * 0.9);
-        self.scene.add(trim.placed(place), false, false);
-
-        let mut chimney = Mesh::default();
         let x = self.random.range(-0.7, 0.7) * w;
-        chimney.cuboid(vec3(x - 0.4, eaves, -2.0), vec3(x + 0.4, eaves + 4.6, -1.2), rgb(0x8c5a48));
-        chimney.cuboid(vec3(x - 0.5, eaves + 4.6, -2.1), vec3(x + 0.5, eaves + 4.8, -1.1), rgb(0x6e6a66));
-        self.scene.add(chimney.placed(place), false, false);
+        trim.cuboid(vec3(x - 0.4, eaves, -2.0), vec3(x + 0.4, eaves + 4.6, -1.2), rgb(0x8c5a48));
+        trim.cuboid(vec3(x - 0.5, eaves + 4.6, -2.1), vec3(x + 0.5, eaves + 4.8, -1.1), rgb(0x6e6a66));
+        self.scene.add(trim.placed(place), false, false);
     }
 
     fn tree(&mut self, at: Vec2, size: f32) {
@@ -231,10 +228,10 @@ impl Town {
         let mut mesh = Mesh::default();
         mesh.cone(base, 3.2 * size, 0.22 * size, 0.16 * size, 6, rgb(0x5d4632));
         let phase = self.random.range(0.0, 6.0);
-        for i in 0..4 {
+        for i in 0..3 {
             let turn = phase + i as f32 * 1.9;
-            let offset = vec3(turn.cos() * 0.9, 3.6 + 0.75 * i as f32, turn.sin() * 0.9) * size;
-            let radius = Vec3::splat((1.9 - 0.25 * i as f32) * size);
+            let offset = vec3(turn.cos() * 0.9, 3.6 + 0.95 * i as f32, turn.sin() * 0.9) * size;
+            let radius = Vec3::splat((2.0 - 0.3 * i as f32) * size);
             mesh.ball(base + offset, radius, 2, green * (0.86 + 0.07 * i as f32), |p| {
                 1.0 + 0.1 * (p.x * 7.0 + phase).sin() * (p.y * 6.0 - phase).cos() + 0.05 * (p.z * 11.0).sin()
             });
