@@ -56,9 +56,21 @@ impl<'a> TriList<'a> {
         // Rust, by the contract of the C functions for one made there. Written unaligned, as C may align
         // it to less than it should.
         unsafe {
-            self.data.add(self.len as usize * FLOATS_PER_TRIANGLE).cast::<[f32; FLOATS_PER_TRIANGLE]>().write_unaligned(*triangle);
+            self.data
+                .add(self.len as usize * FLOATS_PER_TRIANGLE)
+                .cast::<[f32; FLOATS_PER_TRIANGLE]>()
+                .write_unaligned(*triangle);
         }
         self.len += 1;
         true
+    }
+
+    /// The corners of a triangle: x, y and 1/w each.
+    #[inline]
+    pub(crate) fn get(&self, triangle: usize) -> [[f32; 3]; 3] {
+        assert!(triangle < self.len() && self.len <= self.capacity && !self.data.is_null());
+        // SAFETY: `triangle < len <= capacity`, and `data` holds `capacity` triangles: by `new` for a list
+        // made in Rust, by the contract of the C functions for one made there. Read unaligned, as above.
+        unsafe { self.data.add(triangle * FLOATS_PER_TRIANGLE).cast::<[[f32; 3]; 3]>().read_unaligned() }
     }
 }

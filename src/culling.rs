@@ -260,7 +260,14 @@ impl MaskedOcclusionCulling {
     ///
     /// # Errors
     /// [`Error::NoBuffer`].
-    pub fn test_rect(&self, x_min: f32, y_min: f32, x_max: f32, y_max: f32, w_min: f32) -> Result<CullingResult, Error> {
+    pub fn test_rect(
+        &self,
+        x_min: f32,
+        y_min: f32,
+        x_max: f32,
+        y_max: f32,
+        w_min: f32,
+    ) -> Result<CullingResult, Error> {
         let buffer = self.buffer()?;
         let (result, tally) =
             rectangle::test(self.implementation, buffer, self.y_axis, [x_min, y_min, x_max, y_max], w_min);
@@ -388,4 +395,3 @@ impl MaskedOcclusionCulling {
         }
     }
 }
-

@@ -1,2 +1,133 @@
-//! stub
-pub fn test(_: crate::Implementation, _: &crate::buffer::Buffer, _: crate::YAxis, _: [f32; 4], _: f32) -> (crate::CullingResult, crate::statistics::Tally) { (crate::CullingResult::Visible, Default::default()) }
+//! Rectangles against the buffer: the cheap query, for projected bounding boxes.
+//!
+//! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their least depths,
+//! and only where that does not settle it, sub-tile by sub-tile with their layers.
+
+use crate::buffer::{Accurate, Buffer, Quick, Rule, ThreeLayer, UNTOUCHED};
+use crate::simd::{self, Job, Simd};
+use crate::statistics::Tally;
+use crate::{CullingResult, Implementation, UpdateRule, YAxis};
+
+/// From a rounded 1/w to a bound that is not farther than the true one.
+const NEARER: f32 = 1.0 + 1.0 / (1 << 23) as f32;
+
+/// Tests [x min, y min, x max, y max] in normalised device coordinates at `w_min`.
+pub(crate) fn test(
+    implementation: Implementation,
+    buffer: &Buffer,
+    y_axis: YAxis,
+    [x_min, y_min, x_max, y_max]: [f32; 4],
+    w_min: f32,
+) -> (CullingResult, Tally) {
+    let tally = Tally::default();
+    // NaN fails every comparison: it ends here, too.
+    let sound = x_min <= x_max && y_min <= y_max && w_min > 0.0;
+    if !sound {
+        return (CullingResult::Visible, tally);
+    }
+    if x_max <= -1.0 || x_min >= 1.0 || y_max <= -1.0 || y_min >= 1.0 {
+        return (CullingResult::ViewCulled, tally);
+    }
+    let (row_min, row_max) = if y_axis == YAxis::Down { (-y_max, -y_min) } else { (y_min, y_max) };
+    let (x0, x1) = touched(x_min, x_max, buffer.width());
+    let (y0, y1) = touched(row_min, row_max, buffer.height());
+    let depth = 1.0 / w_min * NEARER;
+    let pixels = Pixels { x0, y0, x1, y1 };
+    match buffer.rule() {
+        UpdateRule::ThreeLayer => simd::run(implementation, Walk::<ThreeLayer>::new(buffer, pixels, depth)),
+        UpdateRule::Quick => simd::run(implementation, Walk::<Quick>::new(buffer, pixels, depth)),
+        UpdateRule::Accurate => simd::run(implementation, Walk::<Accurate>::new(buffer, pixels, depth)),
+    }
+}
+
+/// The first and last of `size` pixels across [-1, 1] that an interval touches. One that ends on a
+/// pixel's boundary does not touch the pixel beyond. In f64 nothing is rounded but what is far below a pixel.
+fn touched(min: f32, max: f32, size: u32) -> (u32, u32) {
+    let pixel = |x: f32| (f64::from(x) * 0.5 + 0.5) * f64::from(size);
+    let limit = f64::from(size - 1);
+    let first = pixel(min).floor().clamp(0.0, limit);
+    let last = (pixel(max).ceil() - 1.0).clamp(first, limit);
+    (first as u32, last as u32)
+}
+
+/// A rectangle of pixels, the last inside.
+#[derive(Clone, Copy)]
+struct Pixels {
+    x0: u32,
+    y0: u32,
+    x1: u32,
+    y1: u32,
+}
+
+struct Walk<'a, R> {
+    buffer: &'a Buffer,
+    pixels: Pixels,
+    depth: f32,
+    rule: core::marker::PhantomData<R>,
+}
+
+impl<'a, R: Rule> Walk<'a, R> {
+    fn new(buffer: &'a Buffer, pixels: Pixels, depth: f32) -> Self {
+        Self { buffer, pixels, depth, rule: core::marker::PhantomData }
+    }
+}
+
+impl<R: Rule> Job for Walk<'_, R> {
+    type Output = (CullingResult, Tally);
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, t: T, w: W) -> Self::Output {
+        let (buffer, p) = (self.buffer, self.pixels);
+        let mut tally = Tally::default();
+        let depth = w.f(self.depth);
+        for tile_y in p.y0 / 8..=p.y1 / 8 {
+            let mut tile_x = p.x0 / 32;
+            while tile_x <= p.x1 / 32 {
+                let count = W::LANES.min((p.x1 / 32 - tile_x) as usize + 1);
+                let index = (tile_y * buffer.tiles_w() + tile_x) as usize;
+                // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
+                let least = unsafe { w.load_f(buffer.least().add(index)) };
+                // Lanes that are not behind their whole tile.
+                let mut open = w.mask_bits(w.and_m(w.first(count), w.le(least, depth)));
+                while open != 0 {
+                    let lane = open.trailing_zeros();
+                    open &= open - 1;
+                    tally.traversed += 1;
+                    // SAFETY: one of the tiles that the rectangle touches.
+                    if unsafe { self.sees_tile(t, tile_x + lane, tile_y) } {
+                        return (CullingResult::Visible, tally);
+                    }
+                }
+                tile_x += W::LANES as u32;
+            }
+        }
+        (CullingResult::Occluded, tally)
+    }
+}
+
+impl<R: Rule> Walk<'_, R> {
+    /// May something of the rectangle be seen in this tile?
+    ///
+    /// # Safety
+    /// It is a tile of the buffer, and nobody draws.
+    #[inline(always)]
+    unsafe fn sees_tile<T: Simd>(&self, t: T, x: u32, y: u32) -> bool {
+        let (buffer, p) = (self.buffer, self.pixels);
+        let index = (y * buffer.tiles_w() + x) as usize;
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        let planes = unsafe {
+            if *buffer.least().add(index) == UNTOUCHED {
+                return true;
+            }
+            R::load(t, buffer.tile(index))
+        };
+        // Rows as lanes, their first and their end pixel; a row outside has none.
+        let rows = t.add_i(t.i((y * 8) as i32), t.iota());
+        let inside = t.and_m(t.gt_i(rows, t.i(p.y0 as i32 - 1)), t.gt_i(t.i(p.y1 as i32 + 1), rows));
+        let within = |x_pixel: i64| t.i((x_pixel - i64::from(x) * 32).clamp(0, 32) as i32);
+        let (first, end) = (within(i64::from(p.x0)), within(i64::from(p.x1) + 1));
+        let end = t.select_i(inside, end, t.i(0));
+        let touched = t.transpose_bytes(t.and_not(t.ones_shl(end), t.ones_shl(first)));
+        t.mask_bits(R::hides(t, &planes, touched, t.f(self.depth))) != 0xff
+    }
+}

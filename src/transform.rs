@@ -1,26 +1,40 @@
-//! stub
+//! Vertices to clip space, for callers that want them there.
+
+use glam::Mat4;
+
 use crate::Vertices;
-/// Transforms (x, y, z, 1) by `matrix` into packed clip-space x, y, z, w; as many as fit in `out`.
-pub fn transform_vertices(_matrix: &glam::Mat4, _vertices: Vertices<'_>, _out: &mut [[f32; 4]]) {}
+use crate::simd::{self, Job, Simd};
+use crate::vertices::VertexSource;
+use crate::{Implementation, pipeline};
+
+/// Transforms positions (x, y, z, 1) by `matrix` into packed clip-space x, y, z, w: as many as there are
+/// vertices or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
+pub fn transform_vertices(matrix: &Mat4, vertices: Vertices<'_>, out: &mut [[f32; 4]]) {
+    let count = vertices.len().min(out.len());
+    // SAFETY: both slices have that many.
+    unsafe { transform_raw(matrix, vertices.source(), out.as_mut_ptr().cast(), count) }
+}
+
 /// # Safety
-/// `count` vertices can be read through `source`, and `out` can be written for 4 floats each.
-pub(crate) unsafe fn transform_raw(
-    matrix: &[f32; 16],
-    source: crate::vertices::VertexSource,
+/// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
+pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
+    let best = *Implementation::available().last().unwrap_or(&Implementation::Scalar);
+    simd::run(best, Transform { matrix, source, out, count });
+}
+
+struct Transform<'a> {
+    matrix: &'a Mat4,
+    source: VertexSource,
     out: *mut f32,
     count: usize,
-) {
-    for i in 0..count {
-        // SAFETY: the caller's contract.
-        unsafe {
-            let v = source.base.offset(i as isize * source.layout.stride as isize);
-            let x = v.cast::<f32>().read_unaligned();
-            let y = v.offset(source.layout.offset_y as isize).cast::<f32>().read_unaligned();
-            let z = v.offset(source.layout.offset_zw as isize).cast::<f32>().read_unaligned();
-            for c in 0..4 {
-                let value = x * matrix[c] + y * matrix[4 + c] + z * matrix[8 + c] + matrix[12 + c];
-                out.add(4 * i + c).write_unaligned(value);
-            }
-        }
+}
+
+impl Job for Transform<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, _: T, wide: W) {
+        // SAFETY: whoever made the job vouched for both arrays.
+        unsafe { pipeline::transform(wide, self.matrix, self.source, self.out, self.count) }
     }
 }

@@ -1,11 +1,206 @@
-//! stub
-use crate::{bins::TriList, buffer::Buffer, statistics::Tally, vertices::VertexSource, CullingResult, DrawOptions, Implementation, YAxis};
-pub struct Camera;
-impl Camera { pub fn new(_: u32, _: u32, _: YAxis, _: f32) -> Self { Self } }
-#[allow(dead_code)]
-pub struct Mesh<'a> { pub vertices: VertexSource, pub triangles: &'a [u32], pub options: &'a DrawOptions }
-pub unsafe fn draw(_: Implementation, _: &Buffer, _: &Camera, _: &Mesh) -> (CullingResult, Tally) { (CullingResult::Visible, Tally::default()) }
-pub unsafe fn test(_: Implementation, _: &Buffer, _: &Camera, _: &Mesh) -> (CullingResult, Tally) { (CullingResult::Visible, Tally::default()) }
-pub unsafe fn bin(_: Implementation, _: &Buffer, _: &Camera, _: &Mesh, _: &mut [TriList<'_>], _: (u32, u32), _: (u32, u32)) -> (CullingResult, Tally, bool) { (CullingResult::Visible, Tally::default(), false) }
-pub unsafe fn draw_list(_: Implementation, _: &Buffer, _: &TriList<'_>, _: [u32; 4]) -> Tally { Tally::default() }
-pub fn max_index(_: Implementation, triangles: &[u32]) -> Option<u32> { triangles.iter().copied().max() }
+//! The way of a triangle, one step a file.
+//!
+//! ```text
+//! vertices ──> project    transform, project, snap, mark: once a vertex, a chunk at a time
+//! indices  ──> cull       reject what faces away, lies outside or holds no pixel centre; compact the rest
+//!              clip       the few that cross the near plane or leave the guard band, back into the stream in order
+//!          ──> setup      edges and depth plane, full vectors of survivors
+//!          ──> traverse   the tiles of each: coverage, depth bound, then
+//!                         update (draw), compare (query), or none of that and into lists (bin)
+//! ```
+//!
+//! A draw, a query and a bin differ in the last step alone, and in which way they round: a draw to less
+//! coverage and farther depth, a query to more coverage and nearer depth.
+//!
+//! All that reaches the buffer is computed with the same operations in the same order on every
+//! instruction set, sub-tile by sub-tile; how many triangles are set up together changes nothing.
+
+mod clip;
+mod cull;
+mod edges;
+mod list;
+mod project;
+mod scratch;
+mod setup;
+mod traverse;
+
+use crate::bins::TriList;
+use crate::buffer::{Accurate, Buffer, Quick, Rule, ThreeLayer, TileRect};
+use crate::simd::{self, Job, Simd};
+use crate::statistics::Tally;
+use crate::vertices::VertexSource;
+use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation, UpdateRule};
+
+pub(crate) use project::{Camera, transform};
+use traverse::{Bins, Draw, Query};
+
+/// A call's triangles, three indices each, and how they are to be taken.
+pub(crate) struct Mesh<'a> {
+    pub vertices: VertexSource,
+    pub triangles: &'a [u32],
+    pub options: &'a DrawOptions,
+}
+
+/// What a call has to know about a triangle's facing: which order of its corners runs clockwise in rows
+/// counted downwards, which is the order that setup takes.
+#[derive(Clone, Copy)]
+struct Facing {
+    /// Exchange the second and third corner of every triangle.
+    swap: bool,
+    /// Draw both sides: the order is found triangle by triangle.
+    both: bool,
+}
+
+impl Facing {
+    fn new(winding: BackfaceWinding, camera: &Camera) -> Self {
+        // Counter-clockwise with y up looks the same on the screen, where rows may run downwards.
+        let front_is_counter_clockwise = winding != BackfaceWinding::CounterClockwise;
+        Self { swap: front_is_counter_clockwise == camera.rows_run_down(), both: winding == BackfaceWinding::None }
+    }
+}
+
+/// Draws a mesh.
+///
+/// # Safety
+/// Every vertex that the mesh names can be read, and nobody else uses the buffer.
+pub(crate) unsafe fn draw(
+    implementation: Implementation,
+    buffer: &Buffer,
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+) -> (CullingResult, Tally) {
+    match buffer.rule() {
+        UpdateRule::ThreeLayer => simd::run(implementation, DrawMesh::<ThreeLayer>::new(buffer, camera, mesh)),
+        UpdateRule::Quick => simd::run(implementation, DrawMesh::<Quick>::new(buffer, camera, mesh)),
+        UpdateRule::Accurate => simd::run(implementation, DrawMesh::<Accurate>::new(buffer, camera, mesh)),
+    }
+}
+
+/// Tests a mesh.
+///
+/// # Safety
+/// Every vertex that the mesh names can be read, and nobody draws into the buffer.
+pub(crate) unsafe fn test(
+    implementation: Implementation,
+    buffer: &Buffer,
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+) -> (CullingResult, Tally) {
+    match buffer.rule() {
+        UpdateRule::ThreeLayer => simd::run(implementation, TestMesh::<ThreeLayer>::new(buffer, camera, mesh)),
+        UpdateRule::Quick => simd::run(implementation, TestMesh::<Quick>::new(buffer, camera, mesh)),
+        UpdateRule::Accurate => simd::run(implementation, TestMesh::<Accurate>::new(buffer, camera, mesh)),
+    }
+}
+
+/// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True when one was full.
+///
+/// # Safety
+/// Every vertex that the mesh names can be read.
+pub(crate) unsafe fn bin(
+    implementation: Implementation,
+    buffer: &Buffer,
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+    lists: &mut [TriList<'_>],
+    bin_size: (u32, u32),
+    bins: (u32, u32),
+) -> (CullingResult, Tally, bool) {
+    assert_eq!(lists.len() as u64, u64::from(bins.0) * u64::from(bins.1));
+    simd::run(implementation, BinMesh { buffer, camera, mesh, lists, bin_size, bins })
+}
+
+/// Draws a list inside of a rectangle of tiles.
+///
+/// # Safety
+/// The list's triangles can be read, and nobody else uses the tiles of the rectangle.
+pub(crate) unsafe fn draw_list(
+    implementation: Implementation,
+    buffer: &Buffer,
+    list: &TriList<'_>,
+    scissor: TileRect,
+) -> Tally {
+    match buffer.rule() {
+        UpdateRule::ThreeLayer => simd::run(implementation, DrawList::<ThreeLayer>::new(buffer, list, scissor)),
+        UpdateRule::Quick => simd::run(implementation, DrawList::<Quick>::new(buffer, list, scissor)),
+        UpdateRule::Accurate => simd::run(implementation, DrawList::<Accurate>::new(buffer, list, scissor)),
+    }
+}
+
+/// The largest of the indices.
+pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Option<u32> {
+    (!indices.is_empty()).then(|| simd::run(implementation, cull::IndexRange(indices)).1)
+}
+
+macro_rules! mesh_job {
+    ($job:ident, $last_step:ident) => {
+        struct $job<'a, R> {
+            buffer: &'a Buffer,
+            camera: &'a Camera,
+            mesh: &'a Mesh<'a>,
+            rule: core::marker::PhantomData<R>,
+        }
+
+        impl<'a, R: Rule> $job<'a, R> {
+            fn new(buffer: &'a Buffer, camera: &'a Camera, mesh: &'a Mesh<'a>) -> Self {
+                Self { buffer, camera, mesh, rule: core::marker::PhantomData }
+            }
+        }
+
+        impl<R: Rule> Job for $job<'_, R> {
+            type Output = (CullingResult, Tally);
+
+            #[inline(always)]
+            fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output {
+                let mut last = $last_step::<T, R>::new(tile, self.buffer, self.buffer.all_tiles());
+                cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last)
+            }
+        }
+    };
+}
+
+mesh_job!(DrawMesh, Draw);
+mesh_job!(TestMesh, Query);
+
+struct BinMesh<'a, 'b, 'c> {
+    buffer: &'a Buffer,
+    camera: &'a Camera,
+    mesh: &'a Mesh<'a>,
+    lists: &'b mut [TriList<'c>],
+    bin_size: (u32, u32),
+    bins: (u32, u32),
+}
+
+impl Job for BinMesh<'_, '_, '_> {
+    type Output = (CullingResult, Tally, bool);
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, _: T, wide: W) -> Self::Output {
+        let mut last = Bins::new(self.lists, self.bin_size, self.bins);
+        let (result, tally) = cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last);
+        (result, tally, last.full)
+    }
+}
+
+struct DrawList<'a, 'b, R> {
+    buffer: &'a Buffer,
+    list: &'a TriList<'b>,
+    scissor: TileRect,
+    rule: core::marker::PhantomData<R>,
+}
+
+impl<'a, 'b, R> DrawList<'a, 'b, R> {
+    fn new(buffer: &'a Buffer, list: &'a TriList<'b>, scissor: TileRect) -> Self {
+        Self { buffer, list, scissor, rule: core::marker::PhantomData }
+    }
+}
+
+impl<R: Rule> Job for DrawList<'_, '_, R> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Tally {
+        let mut last = Draw::<T, R>::new(tile, self.buffer, self.scissor);
+        list::draw(wide, self.buffer, self.list, &mut last)
+    }
+}

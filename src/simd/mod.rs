@@ -1,3 +1,190 @@
-//! stub
+//! The vector layer: only the operations that the kernel needs, on every instruction set alike.
+//!
+//! The kernel is written once, generic over [`Simd`], and is entered through [`run`], which picks a token
+//! (a value of size zero whose existence proves that the processor has the instruction set) and calls
+//! the [`Job`] inside of a function compiled for it. For that to work, everything in between is
+//! `#[inline(always)]`: a helper that is not inlined is compiled for the baseline, and each intrinsic
+//! in it becomes a call (36 times slower when it was measured).
+//!
+//! Every operation gives the same bits everywhere. Where instruction sets differ by nature, this layer
+//! fixes one meaning: `min` and `max` return their second operand when either is NaN (as x86 does),
+//! division is the IEEE one, nothing is fused, and rounding to integers is to nearest even.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+mod pair;
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod sse;
+
 use crate::Implementation;
-pub(crate) fn available() -> &'static [Implementation] { &[Implementation::Scalar] }
+
+/// Vectors of `LANES` 32-bit floats (`F`) or integers (`I`), masks (`M`) and 64-bit floats (`D`).
+///
+/// The value of the token is proof that the processor can run the operations; every method relies on it.
+pub(crate) trait Simd: Copy {
+    const LANES: usize;
+    type F: Copy;
+    type I: Copy;
+    type M: Copy;
+    type D: Copy;
+
+    fn f(self, x: f32) -> Self::F;
+    fn i(self, x: i32) -> Self::I;
+    /// 0, 1, 2, ... LANES - 1.
+    fn iota(self) -> Self::I;
+
+    /// # Safety
+    /// `p` can be read for `LANES` values; any alignment.
+    unsafe fn load_f(self, p: *const f32) -> Self::F;
+    /// # Safety
+    /// As [`Self::load_f`].
+    unsafe fn load_i(self, p: *const u32) -> Self::I;
+    /// # Safety
+    /// `p` can be written for `LANES` values; any alignment.
+    unsafe fn store_f(self, p: *mut f32, x: Self::F);
+    /// # Safety
+    /// As [`Self::store_f`].
+    unsafe fn store_i(self, p: *mut u32, x: Self::I);
+    /// # Safety
+    /// As [`Self::store_f`].
+    unsafe fn store_d(self, p: *mut f64, x: Self::D);
+    /// A float from `p`, `p + stride`, `p + 2 * stride`, ... in bytes; any alignment.
+    /// # Safety
+    /// Each of the `LANES` floats can be read.
+    unsafe fn load_strided(self, p: *const u8, stride: usize) -> Self::F;
+    /// `p[index]`. Indices are not negative.
+    /// # Safety
+    /// Each of them can be read.
+    unsafe fn gather(self, p: *const f32, index: Self::I) -> Self::F;
+    /// `LANES` triangles of three indices: the first of each, the second of each, the third of each.
+    /// # Safety
+    /// `p` can be read for `3 * LANES` indices.
+    unsafe fn load_triangles(self, p: *const u32) -> [Self::I; 3];
+    /// Writes the lanes in `m` to `p` without gaps and returns their number.
+    /// # Safety
+    /// `p` can be written for `LANES` values, whatever the mask.
+    unsafe fn compress(self, p: *mut u32, m: Self::M, x: Self::I) -> usize;
+
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    fn abs(self, a: Self::F) -> Self::F;
+    fn lt(self, a: Self::F, b: Self::F) -> Self::M;
+    fn le(self, a: Self::F, b: Self::F) -> Self::M;
+    fn eq(self, a: Self::F, b: Self::F) -> Self::M;
+    fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
+    /// To the nearest integer, ties to even; undefined (but harmless) where it does not fit.
+    fn round(self, a: Self::F) -> Self::I;
+    fn to_f(self, a: Self::I) -> Self::F;
+    fn bits(self, a: Self::F) -> Self::I;
+    fn from_bits(self, a: Self::I) -> Self::F;
+    /// The least lane.
+    fn least(self, a: Self::F) -> f32;
+
+    fn add_i(self, a: Self::I, b: Self::I) -> Self::I;
+    fn sub_i(self, a: Self::I, b: Self::I) -> Self::I;
+    fn and(self, a: Self::I, b: Self::I) -> Self::I;
+    fn or(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `!a & b`.
+    fn and_not(self, a: Self::I, b: Self::I) -> Self::I;
+    fn min_i(self, a: Self::I, b: Self::I) -> Self::I;
+    fn max_i(self, a: Self::I, b: Self::I) -> Self::I;
+    /// The larger as unsigned numbers.
+    fn max_u(self, a: Self::I, b: Self::I) -> Self::I;
+    fn shl<const N: i32>(self, a: Self::I) -> Self::I;
+    /// Shifts in copies of the sign.
+    fn sra<const N: i32>(self, a: Self::I) -> Self::I;
+    /// All ones shifted left by each lane's count, from 0 to 32; by 32 they are gone.
+    fn ones_shl(self, count: Self::I) -> Self::I;
+    fn gt_i(self, a: Self::I, b: Self::I) -> Self::M;
+    fn eq_i(self, a: Self::I, b: Self::I) -> Self::M;
+    fn select_i(self, m: Self::M, a: Self::I, b: Self::I) -> Self::I;
+    /// Rows to sub-tiles: in each group of four lanes, byte `j` of lane `i` goes to byte `i` of lane `j`.
+    fn transpose_bytes(self, a: Self::I) -> Self::I;
+
+    fn and_m(self, a: Self::M, b: Self::M) -> Self::M;
+    fn or_m(self, a: Self::M, b: Self::M) -> Self::M;
+    /// `!a & b`.
+    fn and_not_m(self, a: Self::M, b: Self::M) -> Self::M;
+    /// One bit a lane, lane 0 lowest.
+    fn mask_bits(self, m: Self::M) -> u32;
+    /// A mask of the first `n` lanes.
+    #[inline(always)]
+    fn first(self, n: usize) -> Self::M {
+        self.gt_i(self.i(n as i32), self.iota())
+    }
+
+    fn d(self, x: f64) -> Self::D;
+    fn to_d(self, a: Self::F) -> Self::D;
+    /// To the nearest f32.
+    fn d_to_f(self, a: Self::D) -> Self::F;
+    /// Towards zero; the value must fit.
+    fn d_to_i(self, a: Self::D) -> Self::I;
+    fn add_d(self, a: Self::D, b: Self::D) -> Self::D;
+    fn sub_d(self, a: Self::D, b: Self::D) -> Self::D;
+    fn mul_d(self, a: Self::D, b: Self::D) -> Self::D;
+    fn div_d(self, a: Self::D, b: Self::D) -> Self::D;
+    fn min_d(self, a: Self::D, b: Self::D) -> Self::D;
+    fn max_d(self, a: Self::D, b: Self::D) -> Self::D;
+}
+
+/// A piece of the kernel that runs on any instruction set.
+pub(crate) trait Job {
+    type Output;
+    /// `tile` has the 8 lanes of a 32x8 tile; `wide` as many as the processor likes.
+    fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output;
+}
+
+/// Runs `job` on `implementation`, which must be one of [`available`].
+#[inline]
+pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
+    match implementation {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: an object's implementation is one of `available`, which asked the processor.
+        Implementation::Avx512 => unsafe { avx512::enter(job) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        Implementation::Avx2 => unsafe { avx2::enter(job) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        Implementation::Sse41 => unsafe { sse::enter_sse41(job) },
+        #[cfg(target_arch = "x86_64")]
+        Implementation::Sse2 => sse::enter_sse2(job),
+        #[cfg(target_arch = "aarch64")]
+        Implementation::Neon => neon::enter(job),
+        _ => scalar::enter(job),
+    }
+}
+
+/// What this processor can run, the plainest first.
+pub(crate) fn available() -> &'static [Implementation] {
+    use Implementation::*;
+    #[cfg(target_arch = "x86_64")]
+    {
+        const ALL: [Implementation; 5] = [Scalar, Sse2, Sse41, Avx2, Avx512];
+        let sse41 = is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3");
+        let avx2 = sse41 && is_x86_feature_detected!("avx2");
+        let avx512 = avx2
+            && is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl");
+        &ALL[..2 + usize::from(sse41) + usize::from(avx2) + usize::from(avx512)]
+    }
+    #[cfg(target_arch = "aarch64")]
+    {
+        &[Scalar, Neon]
+    }
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    {
+        &[Scalar]
+    }
+}

@@ -1,0 +1,103 @@
+//! What an update rule is: how a tile's sub-tiles take in a triangle and how they answer a query.
+
+use crate::simd::Simd;
+
+/// The sub-tiles of a tile, one a lane. `z0` is the reference depth: no pixel is farther. The near layer
+/// speaks for the pixels in `near`, which are at least as near as `z_near`; the far layer likewise
+/// (three-layer rule only). The layers are nested: the near pixels are among the far ones.
+pub(crate) struct Planes<S: Simd> {
+    pub z0: S::F,
+    pub z_near: S::F,
+    pub z_far: S::F,
+    pub near: S::I,
+    pub far: S::I,
+}
+
+/// What taking in a triangle did, a lane each.
+pub(crate) struct Inserted<S: Simd> {
+    /// The triangle covers a pixel here and is nearer than the reference depth was.
+    pub live: S::M,
+    /// The reference depth rose.
+    pub merged: S::M,
+}
+
+/// An update rule.
+pub(crate) trait Rule {
+    const PLANES: usize;
+
+    /// A tile into which nothing was drawn.
+    fn empty<S: Simd>(s: S) -> Planes<S>;
+
+    /// # Safety
+    /// `p` can be read for `PLANES` times eight words, and `S` has eight lanes.
+    unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S>;
+
+    /// # Safety
+    /// As [`Self::load`], to be written.
+    unsafe fn store<S: Simd>(s: S, p: *mut u32, planes: &Planes<S>);
+
+    /// Takes in the pixels `coverage`, each at least as near as `depth`. Afterwards no stored bound is
+    /// nearer than what was drawn.
+    fn insert<S: Simd>(s: S, planes: &mut Planes<S>, coverage: S::I, depth: S::F) -> Inserted<S>;
+
+    /// Lanes in which something at `depth` or farther, in the pixels `touched`, is certainly hidden.
+    /// Lanes that touch no pixel are hidden.
+    fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M;
+
+    /// The layers from far to near, to be taken in by another buffer.
+    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3];
+}
+
+/// Lanes where `coverage` holds a pixel and `depth` is nearer than `z0`.
+#[inline(always)]
+pub(super) fn live<S: Simd>(s: S, z0: S::F, coverage: S::I, depth: S::F) -> S::M {
+    s.and_not_m(s.eq_i(coverage, s.i(0)), s.lt(z0, depth))
+}
+
+/// Lanes hidden by a layer: `touched` is inside of its pixels and `depth` is farther than it.
+#[inline(always)]
+pub(super) fn behind_layer<S: Simd>(s: S, touched: S::I, depth: S::F, mask: S::I, z: S::F) -> S::M {
+    s.and_m(s.eq_i(s.and_not(mask, touched), s.i(0)), s.lt(depth, z))
+}
+
+/// Loads and stores of the two rules that keep one working layer, in `near`.
+macro_rules! two_plane_layout {
+    () => {
+        const PLANES: usize = 3;
+
+        #[inline(always)]
+        fn empty<S: Simd>(s: S) -> Planes<S> {
+            Planes { z0: s.f(0.0), z_near: s.f(0.0), z_far: s.f(0.0), near: s.i(0), far: s.i(0) }
+        }
+
+        #[inline(always)]
+        unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S> {
+            // SAFETY: the caller's contract.
+            let (z0, z_near, near) = unsafe { (s.load_f(p.cast()), s.load_f(p.add(8).cast()), s.load_i(p.add(16))) };
+            Planes { z0, z_near, z_far: s.f(0.0), near, far: s.i(0) }
+        }
+
+        #[inline(always)]
+        unsafe fn store<S: Simd>(s: S, p: *mut u32, planes: &Planes<S>) {
+            // SAFETY: the caller's contract.
+            unsafe {
+                s.store_f(p.cast(), planes.z0);
+                s.store_f(p.add(8).cast(), planes.z_near);
+                s.store_i(p.add(16), planes.near);
+            }
+        }
+
+        #[inline(always)]
+        fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
+            let nothing = s.eq_i(touched, s.i(0));
+            let reference = s.or_m(nothing, s.lt(depth, planes.z0));
+            s.or_m(reference, crate::buffer::rule::behind_layer(s, touched, depth, planes.near, planes.z_near))
+        }
+
+        #[inline(always)]
+        fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3] {
+            [(s.i(-1), planes.z0), (planes.near, planes.z_near), (s.i(0), planes.z0)]
+        }
+    };
+}
+pub(super) use two_plane_layout;

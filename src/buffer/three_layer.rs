@@ -1,0 +1,96 @@
+//! The three-layer rule, the default: a reference depth and two nested working layers.
+//!
+//! A triangle makes a third layer for a moment; of the three, the one whose loss costs least depth is
+//! dropped (the farthest is lost to the reference, a nearer one is merged into the next behind it). An empty layer
+//! is kept as a full one at the reference depth, so there are no special cases.
+
+use super::rule::{Inserted, Planes, Rule, behind_layer, live};
+use crate::simd::Simd;
+
+pub(crate) struct ThreeLayer;
+
+impl Rule for ThreeLayer {
+    const PLANES: usize = 5;
+
+    #[inline(always)]
+    fn empty<S: Simd>(s: S) -> Planes<S> {
+        Planes { z0: s.f(0.0), z_near: s.f(0.0), z_far: s.f(0.0), near: s.i(-1), far: s.i(-1) }
+    }
+
+    #[inline(always)]
+    unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S> {
+        // SAFETY: the caller's contract.
+        unsafe {
+            Planes {
+                z0: s.load_f(p.cast()),
+                z_near: s.load_f(p.add(8).cast()),
+                z_far: s.load_f(p.add(16).cast()),
+                near: s.load_i(p.add(24)),
+                far: s.load_i(p.add(32)),
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store<S: Simd>(s: S, p: *mut u32, planes: &Planes<S>) {
+        // SAFETY: the caller's contract.
+        unsafe {
+            s.store_f(p.cast(), planes.z0);
+            s.store_f(p.add(8).cast(), planes.z_near);
+            s.store_f(p.add(16).cast(), planes.z_far);
+            s.store_i(p.add(24), planes.near);
+            s.store_i(p.add(32), planes.far);
+        }
+    }
+
+    #[inline(always)]
+    fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
+        let Planes { z0, z_near, z_far, near, far } = *planes;
+        let live = live(s, z0, c, depth);
+        // A lane that is not live inserts at the reference depth, which changes nothing.
+        let t = s.select(live, depth, z0);
+        let nearer_than_near = s.lt(z_near, t);
+        let nearer_than_far = s.lt(z_far, t);
+        // Three candidate layers and their pixels, nearest first.
+        let mask_a = s.select_i(nearer_than_near, c, near);
+        let mask_b = s.select_i(nearer_than_far, s.or(near, c), far);
+        let mask_c = s.or(far, c);
+        let z_a = s.max(z_near, t);
+        let z_b = s.max(z_far, s.min(z_near, t));
+        let z_c = s.min(z_far, t);
+        // What is lost by dropping each: the depth down to the next, nothing where the next has the same pixels.
+        let loss_a = s.sub(z_a, z_b);
+        let loss_b = s.select(s.eq_i(mask_b, mask_a), s.f(0.0), s.sub(z_b, z_c));
+        let loss_c = s.select(s.eq_i(mask_c, mask_b), s.f(0.0), s.sub(z_c, z0));
+        let full = s.i(-1);
+        let full_c = s.eq_i(mask_c, full);
+        let drop_c = s.or_m(full_c, s.le(loss_c, s.min(loss_a, loss_b)));
+        let drop_a = s.and_not_m(drop_c, s.le(loss_a, loss_b));
+        let risen = s.max(
+            s.max(s.select(full_c, z_c, z0), z0),
+            s.max(s.select(s.eq_i(mask_b, full), z_b, z0), s.select(s.eq_i(mask_a, full), z_a, z0)),
+        );
+        *planes = Planes {
+            z0: risen,
+            z_near: s.select(drop_a, z_b, z_a),
+            near: s.select_i(drop_a, mask_b, mask_a),
+            z_far: s.select(drop_c, z_b, z_c),
+            far: s.select_i(drop_c, mask_b, mask_c),
+        };
+        Inserted { live, merged: s.lt(z0, risen) }
+    }
+
+    #[inline(always)]
+    fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
+        let nothing = s.eq_i(touched, s.i(0));
+        let reference = s.or_m(nothing, s.lt(depth, planes.z0));
+        let near = behind_layer(s, touched, depth, planes.near, planes.z_near);
+        let far = behind_layer(s, touched, depth, planes.far, planes.z_far);
+        s.or_m(reference, s.or_m(near, far))
+    }
+
+    #[inline(always)]
+    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3] {
+        [(s.i(-1), planes.z0), (planes.far, planes.z_far), (planes.near, planes.z_near)]
+    }
+}

@@ -1,0 +1,185 @@
+//! The few triangles that cross the near plane or leave the guard band, one by one, in f64.
+//!
+//! Each plane is clipped against in turn (Sutherland and Hodgman 1974). A new vertex is computed from the
+//! inside end of its edge to the outside end, so that two triangles that share the edge get the same vertex. Vertices
+//! that need no clipping keep the screen coordinates that the vectors gave them, for the same reason.
+
+use super::Facing;
+use super::cull::packed;
+use super::project::{Camera, FARTHEST_W, GUARD_BAND};
+use super::scratch::{CHUNK_VERTICES, Scratch};
+use super::setup::Purpose;
+
+/// A triangle clipped by five planes has at most eight corners, which six triangles fan out from.
+pub(super) const MAX_VERTICES: usize = 8;
+pub(super) const MAX_TRIANGLES: usize = MAX_VERTICES - 2;
+
+/// What is left of a triangle.
+pub(super) enum Clipped {
+    /// It lies outside.
+    Nothing,
+    /// A coordinate is NaN, infinite or too far for an occluder.
+    Dropped,
+    /// Part of an occludee cannot be projected: it may be seen.
+    Unprojectable,
+    Polygon(Polygon),
+}
+
+/// A convex polygon on the screen.
+pub(super) struct Polygon {
+    corners: [[f32; 3]; MAX_VERTICES],
+    len: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Vertex {
+    clip: [f64; 3],
+    /// Where the vectors put it; NaN where they could not.
+    screen: [f32; 3],
+}
+
+const NO_VERTEX: Vertex = Vertex { clip: [0.0; 3], screen: [f32::NAN; 3] };
+
+/// Clips a triangle, given in clip space and as projected by the vectors (x is NaN where that failed).
+#[cold]
+#[inline(never)]
+pub(super) fn triangle(purpose: Purpose, camera: &Camera, clip: &[[f32; 3]; 3], screen: &[[f32; 3]; 3]) -> Clipped {
+    let query = purpose == Purpose::Query;
+    let refused = if query { Clipped::Unprojectable } else { Clipped::Dropped };
+    if clip.as_flattened().iter().any(|x| !x.is_finite()) {
+        return refused;
+    }
+    let all = |outside: fn([f32; 3]) -> bool| clip.iter().all(|&v| outside(v));
+    if all(|[x, _, w]| x < -w)
+        || all(|[x, _, w]| x > w)
+        || all(|[_, y, w]| y < -w)
+        || all(|[_, y, w]| y > w)
+        || all(|[_, _, w]| w <= 0.0)
+    {
+        return Clipped::Nothing;
+    }
+    if query && camera.near_is_raised && clip.iter().any(|v| v[2] < camera.near) {
+        return refused;
+    }
+    if clip.iter().all(|v| v[2] < camera.near) {
+        return Clipped::Nothing;
+    }
+    if clip.iter().any(|v| v[2] > FARTHEST_W) {
+        return refused;
+    }
+
+    let mut corners = [NO_VERTEX; MAX_VERTICES];
+    for k in 0..3 {
+        corners[k] = Vertex { clip: clip[k].map(f64::from), screen: screen[k] };
+    }
+    let mut len = 3;
+    let (wide, high) =
+        (f64::from(GUARD_BAND) / f64::from(camera.half_width), f64::from(GUARD_BAND) / f64::from(camera.half_height));
+    // Inside where a * x + b * y + c * w + d is not negative.
+    let planes = [
+        [0.0, 0.0, 1.0, -f64::from(camera.near)],
+        [1.0, 0.0, wide, 0.0],
+        [-1.0, 0.0, wide, 0.0],
+        [0.0, 1.0, high, 0.0],
+        [0.0, -1.0, high, 0.0],
+    ];
+    for plane in planes {
+        (corners, len) = against(plane, &corners, len);
+    }
+    if len < 3 {
+        return Clipped::Nothing;
+    }
+    let mut polygon = Polygon { corners: [[0.0; 3]; MAX_VERTICES], len };
+    for (to, from) in polygon.corners.iter_mut().zip(&corners[..len]) {
+        *to = if from.screen[0].is_nan() { project(camera, from.clip) } else { from.screen };
+    }
+    Clipped::Polygon(polygon)
+}
+
+/// One plane's worth. A convex polygon gains at most one corner.
+fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize) -> ([Vertex; MAX_VERTICES], usize) {
+    let distance = |v: &Vertex| a * v.clip[0] + b * v.clip[1] + c * v.clip[2] + d;
+    let mut out = [NO_VERTEX; MAX_VERTICES];
+    let mut n = 0;
+    let mut push = |v: Vertex| {
+        // Rounding can make a sliver cross a plane more than twice; what does not fit is a point of the sliver.
+        if n < MAX_VERTICES {
+            out[n] = v;
+            n += 1;
+        }
+    };
+    for k in 0..len {
+        let (from, to) = (&corners[k], &corners[if k + 1 < len { k + 1 } else { 0 }]);
+        let (at_from, at_to) = (distance(from), distance(to));
+        if at_from >= 0.0 {
+            push(*from);
+        }
+        if (at_from >= 0.0) != (at_to >= 0.0) {
+            let (inside, outside, near, far) =
+                if at_from >= 0.0 { (from, to, at_from, at_to) } else { (to, from, at_to, at_from) };
+            let part = near / (near - far);
+            let between = |k: usize| inside.clip[k] + part * (outside.clip[k] - inside.clip[k]);
+            push(Vertex { clip: [between(0), between(1), between(2)], screen: [f32::NAN; 3] });
+        }
+    }
+    (out, n)
+}
+
+/// A new vertex to the screen, snapped.
+fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
+    let limit = f64::from(1 << 26);
+    let snap = |x: f64, scale: f32, half: f32| {
+        (x / w * f64::from(scale) + f64::from(half)).round_ties_even().clamp(-limit, limit) as f32
+    };
+    [snap(x, camera.half_width, camera.half_width), snap(y, camera.row_scale, camera.half_height), (1.0 / w) as f32]
+}
+
+impl Polygon {
+    /// Adds the polygon's fan to the survivors. True when part of it is on the screen and faces the eye.
+    #[inline(never)]
+    pub fn emit(
+        &self,
+        purpose: Purpose,
+        camera: &Camera,
+        facing: Facing,
+        scratch: &mut Scratch,
+        survivors: &mut usize,
+        clipped: &mut usize,
+    ) -> bool {
+        let first = CHUNK_VERTICES + *clipped;
+        for (k, &corner) in self.corners[..self.len].iter().enumerate() {
+            scratch.set_vertex(first + k, corner);
+        }
+        *clipped += self.len;
+        let mut in_view = false;
+        for k in 1..self.len - 1 {
+            if self.faces(purpose, facing, k) && self.on_screen(camera, k) {
+                in_view = true;
+                let corner = |k: usize| (first + k) as u32;
+                scratch.survivors[*survivors].write(packed(facing, [corner(0), corner(k), corner(k + 1)]));
+                *survivors += 1;
+            }
+        }
+        in_view
+    }
+
+    /// May triangle `k` of the fan face the eye?
+    fn faces(&self, purpose: Purpose, facing: Facing, k: usize) -> bool {
+        let [[x0, y0, _], [x1, y1, _], [x2, y2, _]] = [self.corners[0], self.corners[k], self.corners[k + 1]];
+        let (dx1, dy1) = (f64::from(x1) - f64::from(x0), f64::from(y1) - f64::from(y0));
+        let (dx2, dy2) = (f64::from(x2) - f64::from(x0), f64::from(y2) - f64::from(y0));
+        let area = dx1 * dy2 - dx2 * dy1;
+        let area = if facing.swap { -area } else { area };
+        let slack = if purpose == Purpose::Query { dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0 } else { 0.0 };
+        facing.both || area > -slack
+    }
+
+    /// Does the box of triangle `k` of the fan overlap the screen?
+    fn on_screen(&self, camera: &Camera, k: usize) -> bool {
+        let overlaps = |axis: usize, half: f32| {
+            let [a, b, c] = [self.corners[0][axis], self.corners[k][axis], self.corners[k + 1][axis]];
+            a.max(b).max(c) > -2.0 && a.min(b).min(c) < 2.0 * half + 2.0
+        };
+        overlaps(0, camera.half_width) && overlaps(1, camera.half_height)
+    }
+}

@@ -1,0 +1,366 @@
+//! Indices to survivors: most triangles end here, a vector of them at a time.
+//!
+//! A mesh is taken in chunks whose vertices fit in the scratch, each projected once. Where a chunk's indices are
+//! strewn too widely for that, its corners are projected one triangle at a time.
+
+use super::clip::{self, Clipped};
+use super::project::{Camera, Reader, outcode, project};
+use super::scratch::{
+    CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch, pack,
+};
+use super::setup::{Batch, Purpose, set_up};
+use super::traverse::LastStep;
+use super::{Facing, Mesh};
+use crate::CullingResult;
+use crate::buffer::Buffer;
+use crate::simd::{Job, Simd};
+use crate::statistics::Tally;
+
+/// Farther than this outside of the screen, in 1/256 pixel, a snapped vertex is outside for certain.
+const CLEARLY: f32 = 2.0;
+/// Relative error of a doubled area in f32, with room: eight roundings.
+const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
+
+/// The least and the largest of some indices, of which there is at least one.
+pub(super) struct IndexRange<'a>(pub &'a [u32]);
+
+impl Job for IndexRange<'_> {
+    type Output = (u32, u32);
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, _: T, wide: W) -> (u32, u32) {
+        index_range(wide, self.0)
+    }
+}
+
+#[inline(always)]
+fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
+    let (mut least, mut largest) = (u32::MAX, 0);
+    let vectors = indices.chunks_exact(S::LANES);
+    for &index in vectors.remainder() {
+        (least, largest) = (least.min(index), largest.max(index));
+    }
+    if indices.len() >= S::LANES {
+        // The least is the complement of the largest complement.
+        let (mut low, mut high) = (s.i(0), s.i(0));
+        for vector in vectors {
+            // SAFETY: the slice has as many lanes.
+            let index = unsafe { s.load_i(vector.as_ptr()) };
+            low = s.max_u(low, s.and_not(index, s.i(-1)));
+            high = s.max_u(high, index);
+        }
+        let mut lanes = [[0_u32; MAX_LANES]; 2];
+        // SAFETY: sixteen words hold a vector.
+        unsafe {
+            s.store_i(lanes[0].as_mut_ptr(), low);
+            s.store_i(lanes[1].as_mut_ptr(), high);
+        }
+        for lane in 0..S::LANES {
+            (least, largest) = (least.min(!lanes[0][lane]), largest.max(lanes[1][lane]));
+        }
+    }
+    (least, largest)
+}
+
+/// Where the corners of a chunk's triangles are in the scratch.
+#[derive(Clone, Copy)]
+enum Numbering {
+    /// Vertex `base` is the first.
+    From(u32),
+    /// Three for each triangle, in order, from triangle `first` of the mesh on.
+    InOrder { first: usize },
+}
+
+/// Draws, tests or bins a mesh, by its last step.
+#[inline(always)]
+pub(super) fn mesh<S: Simd, L: LastStep>(
+    s: S,
+    buffer: &Buffer,
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+    last: &mut L,
+) -> (CullingResult, Tally) {
+    let reader = Reader::new(s, mesh.vertices, mesh.options.model_to_clip.as_ref());
+    let facing = Facing::new(mesh.options.winding, camera);
+    let mut memory = Scratch::uninit();
+    let scratch = Scratch::of(&mut memory);
+    let mut batch = Batch::new();
+    let triangles = mesh.triangles.len() / 3;
+    let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
+    let mut in_view = false;
+    let (mut position, mut chunk_end, mut numbering) = (0, 0, Numbering::From(0));
+
+    while position < triangles {
+        if position == chunk_end {
+            // SAFETY: the pipeline's caller vouches for the vertices.
+            (chunk_end, numbering) = unsafe { project_chunk(s, camera, &reader, mesh.triangles, position, scratch) };
+        }
+        let (mut survivors, mut clipped) = (0, 0);
+        while position < chunk_end
+            && survivors + S::LANES * clip::MAX_TRIANGLES <= SURVIVORS
+            && clipped + S::LANES * clip::MAX_VERTICES <= CLIPPED_VERTICES
+        {
+            let count = S::LANES.min(chunk_end - position);
+            // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
+            let group = unsafe { Group::new(s, mesh.triangles, position, count, numbering, facing, scratch) };
+            let sieve = group.sieve(s, L::PURPOSE, buffer, camera, facing);
+            in_view |= sieve.in_view;
+            if sieve.irregular == 0 {
+                // SAFETY: there is room for a vector after `SURVIVORS`.
+                survivors += unsafe {
+                    s.compress(scratch.survivors.as_mut_ptr().add(survivors).cast(), sieve.kept, group.packed)
+                };
+            } else {
+                let kept = s.mask_bits(sieve.kept);
+                let mut packed = [0; MAX_LANES];
+                // SAFETY: sixteen words hold a vector.
+                unsafe { s.store_i(packed.as_mut_ptr(), group.packed) };
+                for lane in 0..count {
+                    if kept >> lane & 1 == 1 {
+                        scratch.survivors[survivors].write(packed[lane]);
+                        survivors += 1;
+                    } else if sieve.irregular >> lane & 1 == 1 {
+                        let at = 3 * (position + lane);
+                        let corners = [mesh.triangles[at], mesh.triangles[at + 1], mesh.triangles[at + 2]];
+                        // SAFETY: the pipeline's caller vouches for the vertices.
+                        let (clip, screen) = unsafe { corners_of(s, camera, &reader, corners) };
+                        let polygon = clip::triangle(L::PURPOSE, camera, &clip, &screen);
+                        match polygon {
+                            Clipped::Nothing => {}
+                            Clipped::Dropped => tally.dropped += 1,
+                            Clipped::Unprojectable => return (CullingResult::Visible, tally),
+                            Clipped::Polygon(polygon) => {
+                                in_view |=
+                                    polygon.emit(L::PURPOSE, camera, facing, scratch, &mut survivors, &mut clipped);
+                            }
+                        }
+                    }
+                }
+            }
+            position += count;
+        }
+
+        scratch.pad(survivors);
+        let mut done = 0;
+        while done < survivors {
+            let n = S::LANES.min(survivors - done);
+            // SAFETY: there is room for a vector after the last survivor; survivors name vertices of this chunk.
+            let alive = unsafe {
+                let first = scratch.survivors.as_ptr().add(done).cast();
+                set_up(s, L::PURPOSE, buffer, facing, scratch, first, n, &mut batch)
+            };
+            tally.rasterized += u64::from(alive.rasterized.count_ones());
+            if alive.lanes != 0 && !last.take(&batch, alive.lanes, &mut tally) {
+                return (CullingResult::Visible, tally);
+            }
+            done += n;
+        }
+    }
+    let result = match (in_view, L::PURPOSE) {
+        (false, _) => CullingResult::ViewCulled,
+        (true, Purpose::Query) => CullingResult::Occluded,
+        (true, _) => CullingResult::Visible,
+    };
+    (result, tally)
+}
+
+/// Projects the vertices of the next chunk, and says where it ends and how its corners are numbered.
+///
+/// # Safety
+/// The vertices can be read; `position` is below the number of triangles.
+#[inline(always)]
+unsafe fn project_chunk<S: Simd>(
+    s: S,
+    camera: &Camera,
+    reader: &Reader<S>,
+    indices: &[u32],
+    position: usize,
+    scratch: &mut Scratch,
+) -> (usize, Numbering) {
+    let left = indices.len() / 3 - position;
+    let mut count = left.min(CHUNK_TRIANGLES);
+    loop {
+        let chunk = &indices[3 * position..3 * (position + count)];
+        let (least, largest) = index_range(s, chunk);
+        let vertices = (largest - least) as usize + 1;
+        // Strewn vertices are cheaper one triangle at a time once most of those between would be for nothing.
+        if vertices <= CHUNK_VERTICES.min(3 * count + MAX_LANES) {
+            // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
+            unsafe { reader.dense(camera, least, vertices, scratch) };
+            return (position + count, Numbering::From(least));
+        }
+        if count <= CHUNK_VERTICES / 3 {
+            // SAFETY: the caller's contract.
+            unsafe { reader.sparse(camera, chunk, scratch) };
+            return (position + count, Numbering::InOrder { first: position });
+        }
+        count = (count / 2).min(CHUNK_VERTICES / 3);
+    }
+}
+
+/// The corners of one triangle in clip space, and on the screen as the vectors have them.
+///
+/// # Safety
+/// The vertices can be read.
+#[inline(always)]
+unsafe fn corners_of<S: Simd>(
+    s: S,
+    camera: &Camera,
+    reader: &Reader<S>,
+    [a, b, c]: [u32; 3],
+) -> ([[f32; 3]; 3], [[f32; 3]; 3]) {
+    let mut indices = [c; MAX_LANES];
+    (indices[0], indices[1]) = (a, b);
+    let mut lanes = [[0.0_f32; MAX_LANES]; 6];
+    // SAFETY: the caller's contract; sixteen floats hold a vector.
+    unsafe {
+        let v = reader.load_each(indices);
+        let clip = reader.to_clip([s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())]);
+        let screen = project(s, camera, clip);
+        for k in 0..3 {
+            s.store_f(lanes[k].as_mut_ptr(), clip[k]);
+            s.store_f(lanes[3 + k].as_mut_ptr(), screen[k]);
+        }
+    }
+    let corner = |first: usize, k: usize| [lanes[first][k], lanes[first + 1][k], lanes[first + 2][k]];
+    ([corner(0, 0), corner(0, 1), corner(0, 2)], [corner(3, 0), corner(3, 1), corner(3, 2)])
+}
+
+/// A vector of triangles: their corners' screen coordinates, and their local numbers as a survivor has them.
+struct Group<S: Simd> {
+    active: S::M,
+    packed: S::I,
+    x: [S::F; 3],
+    y: [S::F; 3],
+}
+
+/// What a vector of triangles comes to.
+struct Sieve<S: Simd> {
+    /// Some triangle faces the eye and overlaps the screen.
+    in_view: bool,
+    /// Regular triangles to set up.
+    kept: S::M,
+    /// Triangles to clip, a bit a lane.
+    irregular: u32,
+}
+
+impl<S: Simd> Group<S> {
+    /// # Safety
+    /// Triangles `position` to `position + count` exist and their vertices are in the scratch.
+    #[inline(always)]
+    unsafe fn new(
+        s: S,
+        indices: &[u32],
+        position: usize,
+        count: usize,
+        numbering: Numbering,
+        facing: Facing,
+        scratch: &Scratch,
+    ) -> Self {
+        let local = match numbering {
+            Numbering::From(base) => {
+                let chunk = &indices[3 * position..3 * (position + count)];
+                let mut padded = [base; 3 * MAX_LANES];
+                // SAFETY: either the slice or the copy holds a vector of triangles.
+                let corners = unsafe {
+                    if count == S::LANES {
+                        s.load_triangles(chunk.as_ptr())
+                    } else {
+                        padded[..chunk.len()].copy_from_slice(chunk);
+                        s.load_triangles(padded.as_ptr())
+                    }
+                };
+                let base = s.i(base as i32);
+                [s.sub_i(corners[0], base), s.sub_i(corners[1], base), s.sub_i(corners[2], base)]
+            }
+            Numbering::InOrder { first } => {
+                // Lanes beyond the last are of no account, but their numbers have to be in the scratch.
+                let last = s.i((position + count - first - 1) as i32);
+                let triangle = s.min_i(s.add_i(s.i((position - first) as i32), s.iota()), last);
+                let corner = s.add_i(triangle, s.add_i(triangle, triangle));
+                [corner, s.add_i(corner, s.i(1)), s.add_i(corner, s.i(2))]
+            }
+        };
+        let [a, b, c] = local;
+        let (b, c) = if facing.swap { (c, b) } else { (b, c) };
+        let packed = s.or(a, s.or(s.shl::<{ LOCAL_BITS }>(b), s.shl::<{ 2 * LOCAL_BITS }>(c)));
+        // SAFETY: the caller's contract: local numbers of projected vertices.
+        unsafe {
+            let x = |k: S::I| s.gather(scratch.x.as_ptr().cast(), k);
+            let y = |k: S::I| s.gather(scratch.y.as_ptr().cast(), k);
+            Self { active: s.first(count), packed, x: [x(a), x(b), x(c)], y: [y(a), y(b), y(c)] }
+        }
+    }
+
+    #[inline(always)]
+    fn sieve(&self, s: S, purpose: Purpose, buffer: &Buffer, camera: &Camera, facing: Facing) -> Sieve<S> {
+        let query = purpose == Purpose::Query;
+        let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
+        let is_number = |x: S::F| s.eq(x, x);
+        let regular = s.and_m(is_number(x0), s.and_m(is_number(x1), is_number(x2)));
+        let mut irregular = s.mask_bits(s.and_not_m(regular, self.active));
+        if irregular != 0 {
+            irregular &= !self.outside(s, query && camera.near_is_raised, camera);
+        }
+        let mut kept = s.and_m(self.active, regular);
+
+        let (min_x, max_x) = (s.min(x0, s.min(x1, x2)), s.max(x0, s.max(x1, x2)));
+        let (min_y, max_y) = (s.min(y0, s.min(y1, y2)), s.max(y0, s.max(y1, y2)));
+        let slack = s.f(if query { CLEARLY } else { 0.0 });
+        let end = |half: f32| s.add(s.f(2.0 * half), slack);
+        let begin = s.sub(s.f(0.0), slack);
+        kept = s.and_m(kept, s.and_m(s.lt(begin, max_x), s.lt(min_x, end(camera.half_width))));
+        kept = s.and_m(kept, s.and_m(s.lt(begin, max_y), s.lt(min_y, end(camera.half_height))));
+
+        if !facing.both {
+            // Twice the area in f32: what it calls an unclear case, setup decides.
+            let (dx1, dy1, dx2, dy2) = (s.sub(x1, x0), s.sub(y1, y0), s.sub(x2, x0), s.sub(y2, y0));
+            let (p, q) = (s.mul(dx1, dy2), s.mul(dx2, dy1));
+            let mut error = s.mul(s.add(s.abs(p), s.abs(q)), s.f(AREA_ERROR));
+            if query {
+                // Snapping moves each corner by up to half a subpixel either way.
+                let girth = s.add(s.add(s.abs(dx1), s.abs(dy1)), s.add(s.abs(dx2), s.abs(dy2)));
+                error = s.add(error, s.add(girth, s.f(4.0)));
+            }
+            kept = s.and_m(kept, s.lt(s.sub(q, error), p));
+        }
+        let in_view = s.mask_bits(kept) != 0;
+
+        if !query {
+            // Boxes without a pixel centre on the screen.
+            let centre = |x: S::F| s.sra::<8>(s.add_i(s.round(x), s.i(127)));
+            let some = |min: S::F, max: S::F, size: u32| {
+                s.gt_i(s.min_i(centre(max), s.i(size as i32)), s.max_i(centre(min), s.i(0)))
+            };
+            kept = s.and_m(kept, s.and_m(some(min_x, max_x, buffer.width()), some(min_y, max_y, buffer.height())));
+        }
+        Sieve { in_view, kept, irregular }
+    }
+
+    /// Triangles with all corners outside of one plane.
+    #[inline(always)]
+    fn outside(&self, s: S, keep_near: bool, camera: &Camera) -> u32 {
+        let (low_row, high_row) =
+            if camera.rows_run_down() { (outcode::ABOVE, outcode::BELOW) } else { (outcode::BELOW, outcode::ABOVE) };
+        let code = |k: usize| {
+            let (x, y) = (self.x[k], self.y[k]);
+            let bit = |m: S::M, bit: u32| s.select_i(m, s.i(bit as i32), s.i(0));
+            let beyond = |size: f32| s.f(2.0 * size + CLEARLY);
+            let across = s.or(
+                bit(s.lt(x, s.f(-CLEARLY)), outcode::LEFT),
+                bit(s.lt(beyond(camera.half_width), x), outcode::RIGHT),
+            );
+            let down = s.or(bit(s.lt(y, s.f(-CLEARLY)), low_row), bit(s.lt(beyond(camera.half_height), y), high_row));
+            s.select_i(s.eq(x, x), s.or(across, down), s.bits(x))
+        };
+        let planes = outcode::ALL & if keep_near { !outcode::NEAR } else { !0 };
+        let shared = s.and(s.and(code(0), s.and(code(1), code(2))), s.i(planes as i32));
+        !s.mask_bits(s.eq_i(shared, s.i(0)))
+    }
+}
+
+/// Packs corners as survivors have them.
+#[inline(always)]
+pub(super) fn packed(facing: Facing, [a, b, c]: [u32; 3]) -> u32 {
+    if facing.swap { pack([a, c, b]) } else { pack([a, b, c]) }
+}

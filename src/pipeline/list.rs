@@ -1,0 +1,74 @@
+//! Triangle lists back into the stream: projected already, but from memory that the caller could write to.
+
+use super::Facing;
+use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
+use super::scratch::{CHUNK_VERTICES, Scratch, pack};
+use super::setup::{Batch, set_up};
+use super::traverse::LastStep;
+use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
+use crate::buffer::Buffer;
+use crate::simd::Simd;
+use crate::statistics::Tally;
+
+const CHUNK: usize = CHUNK_VERTICES / 3;
+
+/// Draws the triangles of a list.
+#[inline(always)]
+pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'_>, last: &mut L) -> Tally {
+    // The corners were put in order when the list was filled.
+    let facing = Facing { swap: false, both: false };
+    let mut memory = Scratch::uninit();
+    let scratch = Scratch::of(&mut memory);
+    let mut batch = Batch::new();
+    let mut tally = Tally::default();
+    let mut position = 0;
+    while position < list.len() {
+        let end = list.len().min(position + CHUNK);
+        let survivors = fetch(list, position..end, scratch, &mut tally);
+        position = end;
+        scratch.pad(survivors);
+        let mut done = 0;
+        while done < survivors {
+            let n = S::LANES.min(survivors - done);
+            // SAFETY: there is room for a vector after the last survivor; survivors name vertices just written.
+            let alive = unsafe {
+                let first = scratch.survivors.as_ptr().add(done).cast();
+                set_up(s, L::PURPOSE, buffer, facing, scratch, first, n, &mut batch)
+            };
+            tally.rasterized += u64::from(alive.rasterized.count_ones());
+            if alive.lanes != 0 {
+                last.take(&batch, alive.lanes, &mut tally);
+            }
+            done += n;
+        }
+    }
+    tally
+}
+
+/// Copies triangles into the scratch, without those that no binning could have made; their number.
+fn fetch(list: &TriList<'_>, range: core::ops::Range<usize>, scratch: &mut Scratch, tally: &mut Tally) -> usize {
+    let limit = GUARD_BAND + (1 << 22) as f32;
+    let sound = |&[x, y, z]: &[f32; 3]| {
+        let whole = |x: f32| x.abs() <= limit && x == x.round_ties_even();
+        // Just outside of the range of 1/w, for clipping rounds.
+        whole(x) && whole(y) && (0.5 / FARTHEST_W..=2.0 / NEAREST_W).contains(&z)
+    };
+    let mut survivors = 0;
+    for triangle in range {
+        let corners: [[f32; 3]; 3] = list.get(triangle);
+        if corners.iter().all(sound) {
+            let first = 3 * survivors;
+            for (k, &corner) in corners.iter().enumerate() {
+                scratch.set_vertex(first + k, corner);
+            }
+            let first = first as u32;
+            scratch.survivors[survivors].write(pack([first, first + 1, first + 2]));
+            survivors += 1;
+        } else {
+            tally.dropped += 1;
+        }
+    }
+    survivors
+}
+
+const _: () = assert!(FLOATS_PER_TRIANGLE == 9);

@@ -1,0 +1,289 @@
+//! Vertices to the screen: transform, divide, snap to 1/256 pixel, mark what has to be clipped.
+//!
+//! A vertex is regular when it lies between the near plane and 2^40 and within a guard band of 2^26
+//! subpixels (262,144 pixels) around the screen. Of the others, x becomes a NaN that carries outcodes, so that
+//! a whole triangle outside of one plane still dies in a vector.
+//!
+//! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the
+//! denormal numbers: the bits do not depend on whether the processor flushes those.
+
+use glam::Mat4;
+
+use super::scratch::Scratch;
+use crate::YAxis;
+use crate::simd::Simd;
+use crate::vertices::VertexSource;
+
+/// Nearer than this nothing is projected, whatever the near plane.
+pub(super) const NEAREST_W: f32 = 1.0 / (1 << 30) as f32;
+/// Occluders farther than this are dropped; occludees count as being there.
+pub(super) const FARTHEST_W: f32 = (1_u64 << 40) as f32;
+/// The guard band: how far from the screen's centre a vertex may lie, in 1/256 pixel. With the largest
+/// screen's centre added it stays below 2^26.
+pub(super) const GUARD_BAND: f32 = ((1 << 26) - (1 << 21)) as f32;
+
+/// Outcodes of a vertex, the low bits of a marked x.
+pub(super) mod outcode {
+    pub const NEAR: u32 = 1;
+    pub const LEFT: u32 = 2;
+    pub const RIGHT: u32 = 4;
+    pub const BELOW: u32 = 8;
+    pub const ABOVE: u32 = 16;
+    pub const ALL: u32 = 31;
+    /// What marks carry besides.
+    pub const MARK: u32 = 0x7fc0_0000;
+}
+
+/// From clip space to the screen of a buffer.
+#[derive(Clone, Copy)]
+pub(crate) struct Camera {
+    /// Half the width, in 1/256 pixel.
+    pub half_width: f32,
+    /// Half the height, in 1/256 pixel; positive.
+    pub half_height: f32,
+    /// y of normalised device coordinates to rows: minus half the height where rows run down.
+    pub row_scale: f32,
+    /// The near plane, at least [`NEAREST_W`].
+    pub near: f32,
+    /// Is the near plane closer than can be projected? Then a query may not rely on what clipping removes.
+    pub near_is_raised: bool,
+}
+
+impl Camera {
+    pub fn new(width: u32, height: u32, y_axis: YAxis, near: f32) -> Self {
+        let (half_width, half_height) = (width as f32 * 128.0, height as f32 * 128.0);
+        Self {
+            half_width,
+            half_height,
+            row_scale: if y_axis == YAxis::Down { -half_height } else { half_height },
+            near: near.max(NEAREST_W),
+            near_is_raised: near < NEAREST_W,
+        }
+    }
+
+    pub fn rows_run_down(&self) -> bool {
+        self.row_scale < 0.0
+    }
+}
+
+/// A matrix, an element a vector: the rows for x, y and w.
+pub(super) struct Rows<S: Simd>([[S::F; 4]; 3]);
+
+impl<S: Simd> Rows<S> {
+    #[inline(always)]
+    pub fn new(s: S, matrix: &Mat4) -> Self {
+        let m = matrix.to_cols_array();
+        let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
+        Self([row(0), row(1), row(3)])
+    }
+
+    /// (x, y, z, 1) to clip-space x, y, w.
+    #[inline(always)]
+    pub fn apply(&self, s: S, [x, y, z]: [S::F; 3]) -> [S::F; 3] {
+        [dot(s, &self.0[0], x, y, z), dot(s, &self.0[1], x, y, z), dot(s, &self.0[2], x, y, z)]
+    }
+}
+
+/// A row of a matrix times (x, y, z, 1). Written once, so that every path rounds alike.
+#[inline(always)]
+fn dot<S: Simd>(s: S, row: &[S::F; 4], x: S::F, y: S::F, z: S::F) -> S::F {
+    s.add(s.add(s.mul(x, row[0]), s.mul(y, row[1])), s.add(s.mul(z, row[2]), row[3]))
+}
+
+/// Clip space (x, y, w) to the screen: x and y in 1/256 pixel, and 1/w; or marks.
+#[inline(always)]
+pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [S::F; 3] {
+    let z = s.div(s.f(1.0), w);
+    let across = s.mul(s.mul(x, z), s.f(camera.half_width));
+    let down = s.mul(s.mul(y, z), s.f(camera.row_scale));
+    let in_range = s.and_m(s.le(s.f(camera.near), w), s.le(w, s.f(FARTHEST_W)));
+    let in_band = s.and_m(s.le(s.abs(across), s.f(GUARD_BAND)), s.le(s.abs(down), s.f(GUARD_BAND)));
+    let regular = s.and_m(in_range, in_band);
+    let column = s.to_f(s.round(s.add(across, s.f(camera.half_width))));
+    let row = s.to_f(s.round(s.add(down, s.f(camera.half_height))));
+    if s.mask_bits(regular) == (1 << S::LANES) - 1 {
+        return [column, row, z];
+    }
+    let code = |m: S::M, bit: u32| s.select_i(m, s.i(bit as i32), s.i(0));
+    let minus_w = s.sub(s.f(0.0), w);
+    let mut marks = s.or(code(s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
+    marks = s.or(marks, s.or(code(s.lt(x, minus_w), outcode::LEFT), code(s.lt(w, x), outcode::RIGHT)));
+    marks = s.or(marks, s.or(code(s.lt(y, minus_w), outcode::BELOW), code(s.lt(w, y), outcode::ABOVE)));
+    [s.select(regular, column, s.from_bits(marks)), s.select(regular, row, s.f(0.0)), z]
+}
+
+/// How a call reads its vertices: layout and matrix, ready for vectors.
+pub(super) struct Reader<S: Simd> {
+    s: S,
+    source: VertexSource,
+    rows: Option<Rows<S>>,
+}
+
+impl<S: Simd> Reader<S> {
+    #[inline(always)]
+    pub fn new(s: S, source: VertexSource, matrix: Option<&Mat4>) -> Self {
+        Self { s, source, rows: matrix.map(|m| Rows::new(s, m)) }
+    }
+
+    /// Address of x of a vertex.
+    #[inline(always)]
+    fn at(&self, index: u32) -> *const u8 {
+        // The stride is not negative, and the vertex is there: the product does not overflow.
+        self.source.base.wrapping_add(index as usize * self.source.layout.stride as usize)
+    }
+
+    /// Vertices `first` to `first + LANES` in clip space.
+    ///
+    /// # Safety
+    /// They can be read.
+    #[inline(always)]
+    pub unsafe fn load(&self, first: u32) -> [S::F; 3] {
+        let (p, layout) = (self.at(first), self.source.layout);
+        let stride = layout.stride as usize;
+        // SAFETY: the caller's contract.
+        let v = unsafe {
+            [
+                self.s.load_strided(p, stride),
+                self.s.load_strided(p.offset(layout.offset_y as isize), stride),
+                self.s.load_strided(p.offset(layout.offset_zw as isize), stride),
+            ]
+        };
+        self.to_clip(v)
+    }
+
+    /// `N` vertices as they lie in memory, one after the other.
+    ///
+    /// # Safety
+    /// They can be read.
+    #[inline(always)]
+    pub unsafe fn load_each<const N: usize>(&self, indices: [u32; N]) -> [[f32; N]; 3] {
+        let mut v = [[0.0; N]; 3];
+        for (lane, index) in indices.into_iter().enumerate() {
+            let (p, layout) = (self.at(index), self.source.layout);
+            // SAFETY: the caller's contract.
+            unsafe {
+                v[0][lane] = p.cast::<f32>().read_unaligned();
+                v[1][lane] = p.offset(layout.offset_y as isize).cast::<f32>().read_unaligned();
+                v[2][lane] = p.offset(layout.offset_zw as isize).cast::<f32>().read_unaligned();
+            }
+        }
+        v
+    }
+
+    #[inline(always)]
+    pub fn to_clip(&self, v: [S::F; 3]) -> [S::F; 3] {
+        match &self.rows {
+            Some(rows) => rows.apply(self.s, v),
+            None => v,
+        }
+    }
+
+    /// Projects `count` vertices from `first` on into the scratch.
+    ///
+    /// # Safety
+    /// They can be read; `count` is from 1 to the chunk's size.
+    #[inline(always)]
+    pub unsafe fn dense(&self, camera: &Camera, first: u32, count: usize, scratch: &mut Scratch) {
+        let s = self.s;
+        if count < S::LANES {
+            let last = count as u32 - 1;
+            let indices: [u32; super::scratch::MAX_LANES] =
+                core::array::from_fn(|lane| first + (lane as u32).min(last));
+            // SAFETY: the caller's contract; the scratch has room for a vector.
+            return unsafe { self.each(camera, indices, 0, scratch) };
+        }
+        let mut local = 0;
+        loop {
+            // SAFETY: the caller's contract; local + LANES <= count.
+            unsafe {
+                let [x, y, z] = project(s, camera, self.load(first + local as u32));
+                s.store_f(scratch.x.as_mut_ptr().add(local).cast(), x);
+                s.store_f(scratch.y.as_mut_ptr().add(local).cast(), y);
+                s.store_f(scratch.z.as_mut_ptr().add(local).cast(), z);
+            }
+            local += S::LANES;
+            if local >= count {
+                break;
+            }
+            // The last vector ends with the last vertex and repeats some.
+            local = local.min(count - S::LANES);
+        }
+    }
+
+    /// Projects vertices one index at a time: for meshes whose indices are strewn.
+    ///
+    /// # Safety
+    /// They can be read; there are from 1 to a chunk's size of them.
+    #[inline(always)]
+    pub unsafe fn sparse(&self, camera: &Camera, indices: &[u32], scratch: &mut Scratch) {
+        let mut local = 0;
+        while local < indices.len() {
+            let group: [u32; super::scratch::MAX_LANES] =
+                core::array::from_fn(|lane| indices[(local + lane).min(indices.len() - 1)]);
+            // SAFETY: the caller's contract; the scratch has room for a vector after the chunk's vertices.
+            unsafe { self.each(camera, group, local, scratch) };
+            local += S::LANES;
+        }
+    }
+
+    /// # Safety
+    /// The first `LANES` indices name vertices that can be read; `local` is within the chunk.
+    #[inline(always)]
+    unsafe fn each(
+        &self,
+        camera: &Camera,
+        indices: [u32; super::scratch::MAX_LANES],
+        local: usize,
+        scratch: &mut Scratch,
+    ) {
+        let s = self.s;
+        // SAFETY: all sixteen are read, and all name vertices; arrays of sixteen hold a vector.
+        unsafe {
+            let v = self.load_each(indices);
+            let v = [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())];
+            let [x, y, z] = project(s, camera, self.to_clip(v));
+            s.store_f(scratch.x.as_mut_ptr().add(local).cast(), x);
+            s.store_f(scratch.y.as_mut_ptr().add(local).cast(), y);
+            s.store_f(scratch.z.as_mut_ptr().add(local).cast(), z);
+        }
+    }
+}
+
+/// (x, y, z, 1) times a matrix, for `count` vertices, as packed x, y, z, w.
+///
+/// # Safety
+/// The vertices can be read and `out` can be written for four floats each; either may be unaligned.
+#[inline(always)]
+pub(crate) unsafe fn transform<S: Simd>(s: S, matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
+    let m = matrix.to_cols_array();
+    let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
+    let rows = [row(0), row(1), row(2), row(3)];
+    let reader = Reader { s, source, rows: None };
+    let mut first = 0;
+    while first < count {
+        let n = S::LANES.min(count - first);
+        // SAFETY: the caller's contract.
+        let [x, y, z] = unsafe {
+            if n == S::LANES {
+                reader.load(first as u32)
+            } else {
+                let last = count - 1;
+                let indices: [u32; super::scratch::MAX_LANES] =
+                    core::array::from_fn(|lane| (first + lane).min(last) as u32);
+                let v = reader.load_each(indices);
+                [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())]
+            }
+        };
+        let mut lanes = [[0.0_f32; super::scratch::MAX_LANES]; 4];
+        for (lane, row) in lanes.iter_mut().zip(&rows) {
+            // SAFETY: sixteen floats hold a vector.
+            unsafe { s.store_f(lane.as_mut_ptr(), dot(s, row, x, y, z)) };
+        }
+        for k in 0..n {
+            let vertex = [lanes[0][k], lanes[1][k], lanes[2][k], lanes[3][k]];
+            // SAFETY: the caller's contract.
+            unsafe { out.add(4 * (first + k)).cast::<[f32; 4]>().write_unaligned(vertex) };
+        }
+        first += n;
+    }
+}

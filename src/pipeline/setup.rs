@@ -1,0 +1,366 @@
+//! Edges and depth plane of a vector of triangles.
+//!
+//! **Edges.** With the topmost corner first and the corners clockwise, row `r` of pixels is covered from the larger
+//! of its left events to the smaller of its right events; the event of an edge is the first pixel whose
+//! centre is on or right of it, for both sides, which is the top-left rule. It is the floor of
+//! `x + slope * r` in f64. The exact value there has a denominator of `256 * |dy|`; a bias of
+//! `1 - 1 / (512 * |dy|)` turns the ceiling into a floor with a tolerance of half a denominator either way.
+//! With coordinates up to 2^23 (32,768 pixels) and 2^14 rows, the roundings sum to less than a third of the tolerance,
+//! so the event is exact. Wider triangles go through `edges.rs`, where the constant part is rounded once. A horizontal
+//! edge bounds nothing: the range of rows, which is exact by itself, does.
+//!
+//! **Depth.** 1/w is a plane on the screen. For each sub-tile a draw needs a bound that is not nearer than the
+//! triangle anywhere in the sub-tile's square, a query one that is not farther: the plane at the
+//! farthest (nearest) corner, less (more) a margin for rounding, clamped to the farthest (nearest) vertex.
+//! Let `u = 2^-24`, `Z` the nearest vertex, `gx = Z * (|dy1| + |dy2|) / area`, `gy` likewise with dx, `ex` and `ey`
+//! the farthest that a sub-tile's corner lies from the first corner. Rounding of the vertices' depths, the differences,
+//! products and quotient makes at most `11 u gx` of error in the slope along x; the value at the
+//! anchor adds `4 u (Z + gx ex + gy ey)`, the walk to the sub-tile and its corner `9 u` times the same.
+//! The margin is `32 u (Z + gx ex + gy ey)`. On slivers it is large, and the clamp decides.
+
+use super::Facing;
+use super::edges;
+use super::scratch::{LOCAL_BITS, MAX_LANES, Scratch};
+use crate::buffer::Buffer;
+use crate::simd::Simd;
+
+/// Beyond this, in 1/256 pixel, edges are set up one by one.
+const WIDE: f32 = (1 << 23) as f32;
+/// Far more than any screen, in pixels; what bounds nothing is there.
+const NOWHERE: f32 = 1e30;
+/// 32 roundings.
+const MARGIN: f32 = 32.0 / (1 << 24) as f32;
+/// One unit in the last place and a half: from a vertex's rounded 1/w to a bound of the true one.
+const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
+/// How far, in 1/256 pixel, a snapped vertex may be from the true one, and a little.
+const QUERY_SLACK: i32 = 2;
+
+/// A vector of triangles, set up: what the traversal reads, lane by lane.
+#[repr(C, align(64))]
+pub(super) struct Batch {
+    /// Left edge: constant part of the event, and slope in pixels a row.
+    pub left: [f64; MAX_LANES],
+    pub left_slope: [f64; MAX_LANES],
+    pub right: [f64; MAX_LANES],
+    pub right_slope: [f64; MAX_LANES],
+    /// The edge between the two lower corners bounds one side; on the other it is nowhere.
+    pub middle_left: [f64; MAX_LANES],
+    pub middle_right: [f64; MAX_LANES],
+    pub middle_slope: [f64; MAX_LANES],
+    /// Depth bound of the first sub-tile of the first tile, and its change from sub-tile to sub-tile.
+    pub z: [f32; MAX_LANES],
+    pub z_across: [f32; MAX_LANES],
+    pub z_down: [f32; MAX_LANES],
+    /// The bound is clamped to this: the farthest vertex of a draw, the nearest of a query.
+    pub z_clamp: [f32; MAX_LANES],
+    /// The nearest vertex.
+    pub nearest: [f32; MAX_LANES],
+    /// Tiles of the bounding box, the last inside.
+    pub tile_x0: [u32; MAX_LANES],
+    pub tile_x1: [u32; MAX_LANES],
+    pub tile_y0: [u32; MAX_LANES],
+    pub tile_y1: [u32; MAX_LANES],
+    /// Rows and columns of pixels of the bounding box, the last outside.
+    pub row0: [u32; MAX_LANES],
+    pub row1: [u32; MAX_LANES],
+    pub column0: [u32; MAX_LANES],
+    pub column1: [u32; MAX_LANES],
+    /// x, y and 1/w of the three corners.
+    pub corners: [[f32; MAX_LANES]; 9],
+}
+
+impl Batch {
+    pub fn new() -> Self {
+        Self {
+            left: [0.0; MAX_LANES],
+            left_slope: [0.0; MAX_LANES],
+            right: [0.0; MAX_LANES],
+            right_slope: [0.0; MAX_LANES],
+            middle_left: [0.0; MAX_LANES],
+            middle_right: [0.0; MAX_LANES],
+            middle_slope: [0.0; MAX_LANES],
+            z: [0.0; MAX_LANES],
+            z_across: [0.0; MAX_LANES],
+            z_down: [0.0; MAX_LANES],
+            z_clamp: [0.0; MAX_LANES],
+            nearest: [0.0; MAX_LANES],
+            tile_x0: [0; MAX_LANES],
+            tile_x1: [0; MAX_LANES],
+            tile_y0: [0; MAX_LANES],
+            tile_y1: [0; MAX_LANES],
+            row0: [0; MAX_LANES],
+            row1: [0; MAX_LANES],
+            column0: [0; MAX_LANES],
+            column1: [0; MAX_LANES],
+            corners: [[0.0; MAX_LANES]; 9],
+        }
+    }
+}
+
+/// What the last step wants of setup.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    Draw,
+    Query,
+    Bin,
+}
+
+/// A corner: x, y, 1/w.
+type Corner<S> = [<S as Simd>::F; 3];
+
+/// What setup found, a bit a lane.
+pub(super) struct Alive {
+    /// Triangles that reach the last step.
+    pub lanes: u32,
+    /// Those, and the ones that are hidden by what was drawn.
+    pub rasterized: u32,
+}
+
+/// Sets up the first `n` of the survivors at `survivors`.
+///
+/// # Safety
+/// `survivors` can be read for `LANES` words, each three local numbers of vertices in the scratch, of which the
+/// first `n` are regular ones that were written.
+#[inline(always)]
+pub(super) unsafe fn set_up<S: Simd>(
+    s: S,
+    purpose: Purpose,
+    buffer: &Buffer,
+    facing: Facing,
+    scratch: &Scratch,
+    survivors: *const u32,
+    n: usize,
+    batch: &mut Batch,
+) -> Alive {
+    let query = purpose == Purpose::Query;
+    // SAFETY: the caller's contract.
+    let packed = unsafe { s.load_i(survivors) };
+    let active = s.first(n);
+    let local = |shift: u32| {
+        let mask = s.i((1 << LOCAL_BITS) - 1);
+        match shift {
+            0 => s.and(packed, mask),
+            1 => s.and(s.sra::<{ LOCAL_BITS }>(packed), mask),
+            _ => s.and(s.sra::<{ 2 * LOCAL_BITS }>(packed), mask),
+        }
+    };
+    let (i0, i1, i2) = (local(0), local(1), local(2));
+    // SAFETY: local numbers have ten bits, so that every gather stays inside of the scratch.
+    let (a, b, c) = unsafe { (corner(s, scratch, i0), corner(s, scratch, i1), corner(s, scratch, i2)) };
+
+    // The topmost corner first.
+    let b_top = s.and_m(s.lt(b[1], a[1]), s.le(b[1], c[1]));
+    let c_top = s.and_m(s.lt(c[1], a[1]), s.lt(c[1], b[1]));
+    let turn = |x: Corner<S>, y: Corner<S>, z: Corner<S>| -> Corner<S> {
+        let pick = |k: usize| s.select(b_top, y[k], s.select(c_top, z[k], x[k]));
+        [pick(0), pick(1), pick(2)]
+    };
+    let (v0, mut v1, mut v2) = (turn(a, b, c), turn(b, c, a), turn(c, a, b));
+    if facing.both {
+        let back = s.lt(doubled_area(s, v0, v1, v2).0, s.f(0.0));
+        for k in 0..3 {
+            (v1[k], v2[k]) = (s.select(back, v2[k], v1[k]), s.select(back, v1[k], v2[k]));
+        }
+    }
+    let (area, deltas) = doubled_area(s, v0, v1, v2);
+
+    // Bounding box: pixels whose centre is inside, or, for a query, that are touched.
+    let (min_x, max_x) = (s.min(v0[0], s.min(v1[0], v2[0])), s.max(v0[0], s.max(v1[0], v2[0])));
+    let max_y = s.max(v1[1], v2[1]);
+    let (low, high) = if query { (-QUERY_SLACK, 256 + QUERY_SLACK) } else { (127, 127) };
+    let pixel = |x: S::F, add: i32| s.sra::<8>(s.add_i(s.round(x), s.i(add)));
+    let column0 = s.max_i(pixel(min_x, low), s.i(0));
+    let column1 = s.min_i(pixel(max_x, high), s.i(buffer.width() as i32));
+    let row0 = s.max_i(pixel(v0[1], low), s.i(0));
+    let row1 = s.min_i(pixel(max_y, high), s.i(buffer.height() as i32));
+    let inside = s.and_m(s.gt_i(column1, column0), s.gt_i(row1, row0));
+    let mut alive = s.and_m(active, inside);
+    if !query {
+        alive = s.and_m(alive, s.lt(s.f(0.0), area));
+    }
+    let tile_x0 = s.sra::<5>(column0);
+    let tile_x1 = s.sra::<5>(s.sub_i(column1, s.i(1)));
+    let tile_y0 = s.sra::<3>(row0);
+    let tile_y1 = s.sra::<3>(s.sub_i(row1, s.i(1)));
+
+    // SAFETY (of the stores below): the arrays of a batch hold the lanes of any vector.
+    macro_rules! store {
+        ($field:ident, $value:expr) => {
+            // SAFETY: as above.
+            unsafe { s.store_f(batch.$field.as_mut_ptr(), $value) }
+        };
+        (i $field:ident, $value:expr) => {
+            // SAFETY: as above.
+            unsafe { s.store_i(batch.$field.as_mut_ptr(), $value) }
+        };
+        (d $field:ident, $value:expr) => {
+            // SAFETY: as above.
+            unsafe { s.store_d(batch.$field.as_mut_ptr(), $value) }
+        };
+    }
+    let wide = s.lt(s.f(WIDE), widest(s, min_x, max_x, v0[1], max_y));
+    let wide = s.mask_bits(s.and_m(wide, active));
+    if purpose == Purpose::Bin || wide != 0 {
+        let corners = [v0[0], v0[1], v0[2], v1[0], v1[1], v1[2], v2[0], v2[1], v2[2]];
+        for (lanes, value) in batch.corners.iter_mut().zip(corners) {
+            // SAFETY: as above.
+            unsafe { s.store_f(lanes.as_mut_ptr(), value) };
+        }
+    }
+    let mut lanes = s.mask_bits(alive);
+    if wide != 0 && !query {
+        // In f64 the sign of the area of so wide a triangle may be off.
+        let drawable = s.mask_bits(s.and_m(active, inside));
+        lanes = edges::correct_facing(batch, lanes, wide & drawable);
+    }
+    let rasterized = lanes;
+    store!(i tile_x0, tile_x0);
+    store!(i tile_x1, tile_x1);
+    store!(i tile_y0, tile_y0);
+    store!(i tile_y1, tile_y1);
+    if purpose == Purpose::Bin || lanes == 0 {
+        return Alive { lanes, rasterized };
+    }
+
+    // Hidden by all of the one to four tiles that it reaches: not worth setting up.
+    let nearest = s.max(v0[2], s.max(v1[2], v2[2]));
+    let farthest = s.min(v0[2], s.min(v1[2], v2[2]));
+    let nearest = s.mul(nearest, s.f(1.0 + VERTEX_MARGIN));
+    let few = s
+        .and_not_m(s.or_m(s.gt_i(s.sub_i(tile_x1, tile_x0), s.i(1)), s.gt_i(s.sub_i(tile_y1, tile_y0), s.i(1))), alive);
+    if s.mask_bits(few) != 0 {
+        let row = |y: S::I| s.mul(s.to_f(y), s.f(buffer.tiles_w() as f32));
+        let tile = |y: S::F, x: S::I| s.select_i(few, s.add_i(s.round(y), x), s.i(0));
+        let (upper, lower) = (row(tile_y0), row(tile_y1));
+        // SAFETY: lanes of `few` name tiles inside of the buffer, the others name the first.
+        let least = unsafe {
+            let at = |index: S::I| s.gather(buffer.least(), index);
+            let upper = s.min(at(tile(upper, tile_x0)), at(tile(upper, tile_x1)));
+            s.min(upper, s.min(at(tile(lower, tile_x0)), at(tile(lower, tile_x1))))
+        };
+        let hidden = if query { s.lt(nearest, least) } else { s.le(nearest, least) };
+        lanes &= !s.mask_bits(s.and_m(few, hidden));
+        if lanes == 0 {
+            return Alive { lanes, rasterized };
+        }
+    }
+
+    // Edges.
+    let Deltas { right: (dx_r, dy_r), left: (dx_l, dy_l) } = deltas;
+    let (x0, y0, x1, y1) = (s.to_d(v0[0]), s.to_d(v0[1]), s.to_d(v1[0]), s.to_d(v1[1]));
+    let down = s.lt(v1[1], v2[1]);
+    let up = s.lt(v2[1], v1[1]);
+    let sign = s.to_d(s.select(down, s.f(1.0), s.f(-1.0)));
+    let (dx_m, dy_m) = (s.mul_d(s.sub_d(dx_l, dx_r), sign), s.mul_d(s.sub_d(dy_l, dy_r), sign));
+    // From the row's centre to the corner, in rows; from the corner to pixel 0's centre (its left side for a query).
+    let rows = |y: S::D| s.mul_d(s.sub_d(s.d(128.0), y), s.d(1.0 / 256.0));
+    let columns = |x: S::D| s.mul_d(s.sub_d(x, s.d(if query { 0.0 } else { 128.0 })), s.d(1.0 / 256.0));
+    let edge = |x: S::D, y: S::D, dx: S::D, dy: S::D| -> [S::D; 3] {
+        // A quarter stands for zero: such an edge is put nowhere below.
+        let inverse = s.div_d(s.d(1.0), s.max_d(dy, s.d(0.25)));
+        let slope = s.mul_d(dx, inverse);
+        let at = s.add_d(columns(x), s.mul_d(slope, rows(y)));
+        if query {
+            // The row's upper and lower end instead of its centre, and what snapping may have moved.
+            let steep = s.max_d(slope, s.sub_d(s.d(0.0), slope));
+            let slack = s.add_d(s.mul_d(steep, s.d(0.5 + 1.0 / 128.0)), s.d(1.0 / 128.0));
+            [s.sub_d(at, slack), s.add_d(at, s.add_d(slack, s.d(1.0))), slope]
+        } else {
+            let at = s.add_d(at, s.sub_d(s.d(1.0), s.mul_d(inverse, s.d(1.0 / 512.0))));
+            [at, at, slope]
+        }
+    };
+    let nowhere = |is: S::M, x: f32| s.to_d(s.select(is, s.f(x), s.f(0.0)));
+    // A query keeps triangles that snapping made degenerate or turned over: their bounding box stands for them.
+    let flat = s.le(area, s.f(0.0));
+    let flat_or = |m: S::M| if query { s.or_m(flat, m) } else { m };
+    let [_, right, right_slope] = edge(x0, y0, dx_r, dy_r);
+    store!(d right, s.add_d(right, nowhere(flat_or(s.eq(v0[1], v1[1])), NOWHERE)));
+    store!(d right_slope, right_slope);
+    let [left, _, left_slope] = edge(x0, y0, dx_l, dy_l);
+    store!(d left, s.add_d(left, nowhere(flat_or(s.eq(v0[1], v2[1])), -NOWHERE)));
+    store!(d left_slope, left_slope);
+    let [middle_left, middle_right, middle_slope] = edge(x1, y1, dx_m, dy_m);
+    let all = s.le(s.f(0.0), s.f(0.0));
+    store!(d middle_left, s.add_d(middle_left, nowhere(flat_or(s.and_not_m(up, all)), -NOWHERE)));
+    store!(d middle_right, s.add_d(middle_right, nowhere(flat_or(s.and_not_m(down, all)), NOWHERE)));
+    store!(d middle_slope, middle_slope);
+    store!(i row0, row0);
+    store!(i row1, row1);
+    store!(i column0, column0);
+    store!(i column1, column1);
+    if !query {
+        edges::replace_wide(batch, lanes & wide);
+    }
+
+    // Depth plane.
+    let (dx1, dy1) = (s.sub(v1[0], v0[0]), s.sub(v1[1], v0[1]));
+    let (dx2, dy2) = (s.sub(v2[0], v0[0]), s.sub(v2[1], v0[1]));
+    let (dz1, dz2) = (s.sub(v1[2], v0[2]), s.sub(v2[2], v0[2]));
+    let inverse = s.div(s.f(1.0), s.max(area, s.f(1.0)));
+    let across = s.mul(s.sub(s.mul(dz1, dy2), s.mul(dz2, dy1)), inverse);
+    let down = s.mul(s.sub(s.mul(dx1, dz2), s.mul(dx2, dz1)), inverse);
+    let (first_x, first_y) = (s.to_f(s.shl::<13>(tile_x0)), s.to_f(s.shl::<11>(tile_y0)));
+    let (end_x, end_y) = (s.to_f(s.shl::<13>(s.add_i(tile_x1, s.i(1)))), s.to_f(s.shl::<11>(s.add_i(tile_y1, s.i(1)))));
+    let (from_x, from_y) = (s.sub(first_x, v0[0]), s.sub(first_y, v0[1]));
+    let reach_x = s.max(s.abs(from_x), s.abs(s.sub(end_x, v0[0])));
+    let reach_y = s.max(s.abs(from_y), s.abs(s.sub(end_y, v0[1])));
+    let steep_x = s.mul(s.mul(nearest, s.add(s.abs(dy1), s.abs(dy2))), inverse);
+    let steep_y = s.mul(s.mul(nearest, s.add(s.abs(dx1), s.abs(dx2))), inverse);
+    let margin = s.mul(s.add(nearest, s.add(s.mul(steep_x, reach_x), s.mul(steep_y, reach_y))), s.f(MARGIN));
+    // Per sub-tile of 8 by 4 pixels.
+    let (across_sub, down_sub) = (s.mul(across, s.f(2048.0)), s.mul(down, s.f(1024.0)));
+    let first = s.add(v0[2], s.add(s.mul(across, from_x), s.mul(down, from_y)));
+    let zero = s.f(0.0);
+    let plane = if query {
+        let corner = s.add(s.max(across_sub, zero), s.max(down_sub, zero));
+        let plane = s.add(first, s.add(corner, margin));
+        s.select(flat, s.f(NOWHERE), plane)
+    } else {
+        let corner = s.add(s.min(across_sub, zero), s.min(down_sub, zero));
+        s.add(first, s.sub(corner, margin))
+    };
+    store!(z, plane);
+    store!(z_across, if query { s.select(flat, zero, across_sub) } else { across_sub });
+    store!(z_down, if query { s.select(flat, zero, down_sub) } else { down_sub });
+    store!(z_clamp, if query { nearest } else { s.mul(farthest, s.f(1.0 - VERTEX_MARGIN)) });
+    store!(nearest, nearest);
+    Alive { lanes, rasterized }
+}
+
+/// # Safety
+/// Each index is below 1024; lanes whose vertex was never written hold anything.
+#[inline(always)]
+unsafe fn corner<S: Simd>(s: S, scratch: &Scratch, index: S::I) -> Corner<S> {
+    // SAFETY: the caller's contract.
+    unsafe {
+        [
+            s.gather(scratch.x.as_ptr().cast(), index),
+            s.gather(scratch.y.as_ptr().cast(), index),
+            s.gather(scratch.z.as_ptr().cast(), index),
+        ]
+    }
+}
+
+/// The largest coordinate in size.
+#[inline(always)]
+fn widest<S: Simd>(s: S, min_x: S::F, max_x: S::F, min_y: S::F, max_y: S::F) -> S::F {
+    s.max(s.max(s.abs(min_x), s.abs(max_x)), s.max(s.abs(min_y), s.abs(max_y)))
+}
+
+/// Exact differences from the first corner to the second and to the third.
+struct Deltas<S: Simd> {
+    right: (S::D, S::D),
+    left: (S::D, S::D),
+}
+
+/// Twice the area, positive for clockwise corners in rows that run down; exact before its rounding to
+/// f32 (which keeps the sign) for coordinates up to 2^25.
+#[inline(always)]
+fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (S::F, Deltas<S>) {
+    let (x0, y0) = (s.to_d(v0[0]), s.to_d(v0[1]));
+    let right = (s.sub_d(s.to_d(v1[0]), x0), s.sub_d(s.to_d(v1[1]), y0));
+    let left = (s.sub_d(s.to_d(v2[0]), x0), s.sub_d(s.to_d(v2[1]), y0));
+    let area = s.sub_d(s.mul_d(right.0, left.1), s.mul_d(left.0, right.1));
+    (s.d_to_f(area), Deltas { right, left })
+}

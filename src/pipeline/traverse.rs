@@ -1,0 +1,251 @@
+//! The last step: the tiles of each triangle, and what is done in them.
+//!
+//! Coverage comes from events (see `setup.rs`): eight rows of a tile are eight lanes of 32 pixels each,
+//! two shifts a lane; transposing bytes then turns rows into sub-tiles, eight lanes of 8x4 pixels (HPG 2016,
+//! section 3.1). A strip of tiles shares its events.
+
+use core::marker::PhantomData;
+
+use super::edges::bits;
+use super::setup::{Batch, Purpose};
+use crate::bins::TriList;
+use crate::buffer::{Buffer, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect, UNTOUCHED, fresh};
+use crate::simd::Simd;
+use crate::statistics::Tally;
+
+/// What is done with triangles that were set up.
+pub(super) trait LastStep {
+    const PURPOSE: Purpose;
+
+    /// Takes the triangles in `lanes`, in order. False: no more are needed.
+    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool;
+}
+
+/// The events of one strip of tiles: for each of eight rows the first pixel inside and the first beyond.
+struct Strip<T: Simd> {
+    left: T::I,
+    right: T::I,
+}
+
+impl<T: Simd> Strip<T> {
+    #[inline(always)]
+    fn new(t: T, batch: &Batch, lane: usize, tile_y: u32, width: f64) -> Self {
+        let first_row = (tile_y * TILE_HEIGHT) as i32;
+        let rows = t.add_i(t.i(first_row), t.iota());
+        let row = t.to_d(t.to_f(rows));
+        let event = |at: f64, slope: f64| t.add_d(t.d(at), t.mul_d(t.d(slope), row));
+        let along_middle = t.mul_d(t.d(batch.middle_slope[lane]), row);
+        let left = t.max_d(
+            event(batch.left[lane], batch.left_slope[lane]),
+            t.add_d(t.d(batch.middle_left[lane]), along_middle),
+        );
+        let right = t.min_d(
+            event(batch.right[lane], batch.right_slope[lane]),
+            t.add_d(t.d(batch.middle_right[lane]), along_middle),
+        );
+        let clamp = |x: T::D| t.d_to_i(t.min_d(t.max_d(x, t.d(0.0)), t.d(width)));
+        // Rows above the first and below the last have no pixels.
+        let inside =
+            t.and_m(t.gt_i(rows, t.i(batch.row0[lane] as i32 - 1)), t.gt_i(t.i(batch.row1[lane] as i32), rows));
+        Self { left: clamp(left), right: t.select_i(inside, clamp(right), t.i(0)) }
+    }
+
+    /// The pixels of a tile, a sub-tile a lane.
+    #[inline(always)]
+    fn coverage(&self, t: T, tile_x: u32) -> T::I {
+        let within =
+            |x: T::I| t.min_i(t.max_i(t.sub_i(x, t.i((tile_x * TILE_WIDTH) as i32)), t.i(0)), t.i(TILE_WIDTH as i32));
+        let (left, right) = (within(self.left), within(self.right));
+        t.transpose_bytes(t.and_not(t.ones_shl(right), t.ones_shl(left)))
+    }
+
+    /// The tiles from the first to the last that any row reaches; the last is before the first where none does.
+    #[inline(always)]
+    fn reach(&self, t: T) -> (i32, i32) {
+        let empty = t.gt_i(t.add_i(self.left, t.i(1)), self.right);
+        let first = t.least(t.select(empty, t.f(f32::MAX), t.to_f(self.left)));
+        let last = -t.least(t.select(empty, t.f(0.0), t.sub(t.f(0.0), t.to_f(self.right))));
+        if last <= 0.0 { (0, -1) } else { (first as i32 / TILE_WIDTH as i32, (last as i32 - 1) / TILE_WIDTH as i32) }
+    }
+}
+
+/// Calls `visit(tile x, tile y, coverage, depth)` for each tile of a triangle inside of `clip` whose least
+/// depth `hidden` does not refuse.
+///
+/// A macro, since a closure that is called from two places is not inlined.
+macro_rules! for_each_tile {
+    ($t:ident, $buffer:expr, $clip:expr, $batch:ident, $lane:ident, |$x:ident, $y:ident, $index:ident, $least:ident, $coverage:ident, $plane:ident| $visit:block) => {{
+        let clip: TileRect = $clip;
+        let (x0, x1) = ($batch.tile_x0[$lane], $batch.tile_x1[$lane]);
+        let (y0, y1) = ($batch.tile_y0[$lane], $batch.tile_y1[$lane]);
+        let (z, across, down) = ($t.f($batch.z[$lane]), $t.f($batch.z_across[$lane]), $t.f($batch.z_down[$lane]));
+        let column = $t.and($t.iota(), $t.i(3));
+        let half = $t.sra::<2>($t.iota());
+        for $y in y0.max(clip.y0)..=y1.min(clip.y1.wrapping_sub(1)) {
+            let strip = Strip::new($t, $batch, $lane, $y, $buffer.tiles_w() as f64 * TILE_WIDTH as f64);
+            let (mut first, mut last) = (x0.max(clip.x0) as i32, x1.min(clip.x1.wrapping_sub(1)) as i32);
+            if x1 - x0 >= 2 {
+                let (reach_first, reach_last) = strip.reach($t);
+                (first, last) = (first.max(reach_first), last.min(reach_last));
+            }
+            let sub_row = $t.add_i($t.i(2 * ($y - y0) as i32), half);
+            let z_row = $t.add(z, $t.mul(down, $t.to_f(sub_row)));
+            for $x in first..=last {
+                let $x = $x as u32;
+                let $index = ($y * $buffer.tiles_w() + $x) as usize;
+                // SAFETY: tiles of a triangle's box are tiles of the buffer.
+                let $least = unsafe { $buffer.least().add($index) };
+                let sub_column = $t.add_i($t.i(4 * ($x - x0) as i32), column);
+                let $plane = $t.add(z_row, $t.mul(across, $t.to_f(sub_column)));
+                let $coverage = || strip.coverage($t, $x);
+                $visit
+            }
+        }
+    }};
+}
+
+/// Draws into a buffer, inside of a rectangle of tiles.
+pub(super) struct Draw<'a, T, R> {
+    t: T,
+    buffer: &'a Buffer,
+    clip: TileRect,
+    rule: PhantomData<R>,
+}
+
+impl<'a, T: Simd, R: Rule> Draw<'a, T, R> {
+    pub fn new(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
+        const { assert!(T::LANES == SUB_TILES) }
+        Self { t, buffer, clip, rule: PhantomData }
+    }
+}
+
+impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
+    const PURPOSE: Purpose = Purpose::Draw;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool {
+        let (t, buffer) = (self.t, self.buffer);
+        for lane in bits(lanes) {
+            let nearest = batch.nearest[lane];
+            for_each_tile!(t, buffer, self.clip, batch, lane, |x, y, index, least, coverage, plane| {
+                // SAFETY: a tile of the buffer, which the caller of the pipeline keeps to this call.
+                let before = unsafe { *least };
+                if nearest <= before {
+                    continue;
+                }
+                let mut covered = coverage();
+                let border = buffer.border(x, y);
+                if let Some(outside) = border {
+                    // SAFETY: eight words.
+                    let outside = unsafe { t.load_i(outside.as_ptr()) };
+                    let nothing = t.eq_i(t.and_not(outside, covered), t.i(0));
+                    covered = t.select_i(nothing, t.i(0), t.or(covered, outside));
+                }
+                let depth = t.max(plane, t.f(batch.z_clamp[lane]));
+                // SAFETY: as above; the buffer was made for the rule `R`.
+                let inserted = unsafe {
+                    let tile = buffer.tile(index);
+                    let mut planes = if before == UNTOUCHED { fresh::<T, R>(t, border) } else { R::load(t, tile) };
+                    let inserted = R::insert(t, &mut planes, covered, depth);
+                    R::store(t, tile, &planes);
+                    *least = t.least(planes.z0);
+                    inserted
+                };
+                tally.traversed += 1;
+                tally.updated += u64::from(t.mask_bits(inserted.live) != 0);
+                tally.merged += u64::from(t.mask_bits(inserted.merged) != 0);
+            });
+        }
+        true
+    }
+}
+
+/// Compares with a buffer until something may be seen.
+pub(super) struct Query<'a, T, R> {
+    t: T,
+    buffer: &'a Buffer,
+    rule: PhantomData<R>,
+}
+
+impl<'a, T: Simd, R: Rule> Query<'a, T, R> {
+    pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
+        const { assert!(T::LANES == SUB_TILES) }
+        Self { t, buffer, rule: PhantomData }
+    }
+}
+
+impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
+    const PURPOSE: Purpose = Purpose::Query;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool {
+        let (t, buffer) = (self.t, self.buffer);
+        for lane in bits(lanes) {
+            let nearest = batch.nearest[lane];
+            let columns = (t.i(batch.column0[lane] as i32), t.i(batch.column1[lane] as i32));
+            for_each_tile!(t, buffer, buffer.all_tiles(), batch, lane, |x, y, index, least, coverage, plane| {
+                // SAFETY: a tile of the buffer, into which nobody draws.
+                let least = unsafe { *least };
+                if nearest < least {
+                    continue;
+                }
+                // Edges that are nearly horizontal reach beyond the corners; the box does not.
+                let strip = Strip::<T> { left: columns.0, right: columns.1 };
+                let mut touched = t.and(coverage(), strip.coverage(t, x));
+                if let Some(outside) = buffer.border(x, y) {
+                    // SAFETY: eight words.
+                    touched = t.and_not(unsafe { t.load_i(outside.as_ptr()) }, touched);
+                }
+                let depth = t.min(plane, t.f(batch.z_clamp[lane]));
+                tally.traversed += 1;
+                // SAFETY: as above; the buffer was made for the rule `R`.
+                let visible = if least == UNTOUCHED {
+                    t.mask_bits(t.eq_i(touched, t.i(0))) != 0xff
+                } else {
+                    let planes = unsafe { R::load(t, buffer.tile(index)) };
+                    t.mask_bits(R::hides(t, &planes, touched, depth)) != 0xff
+                };
+                if visible {
+                    return false;
+                }
+            });
+        }
+        true
+    }
+}
+
+/// Appends to the lists of bins.
+pub(super) struct Bins<'b, 'c> {
+    lists: &'b mut [TriList<'c>],
+    bin_size: (u32, u32),
+    bins: (u32, u32),
+    /// Some list had no room.
+    pub full: bool,
+}
+
+impl<'b, 'c> Bins<'b, 'c> {
+    pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32)) -> Self {
+        Self { lists, bin_size, bins, full: false }
+    }
+}
+
+impl LastStep for Bins<'_, '_> {
+    const PURPOSE: Purpose = Purpose::Bin;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, lanes: u32, _: &mut Tally) -> bool {
+        let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
+        for lane in bits(lanes) {
+            let triangle = core::array::from_fn(|k| batch.corners[k][lane]);
+            // The last bin takes what division leaves over.
+            let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
+            let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
+            for y in row(batch.tile_y0[lane])..=row(batch.tile_y1[lane]) {
+                for x in column(batch.tile_x0[lane])..=column(batch.tile_x1[lane]) {
+                    self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
+                }
+            }
+        }
+        true
+    }
+}
