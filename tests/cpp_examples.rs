@@ -19,7 +19,8 @@ fn outputs(source: &str) -> [String; 2] {
 
 fn compile(source: &str, link: Link, defines: &[(&str, &str)], out: &Path) -> std::path::PathBuf {
     let source = native::root().join("cpp-examples").join(source);
-    native::build(&Program { source: &source, out, link, defines, flags: &[] }).unwrap_or_else(|e| panic!("{e}"))
+    let flags = [if cfg!(target_env = "msvc") { "/WX" } else { "-Werror" }];
+    native::build(&Program { source: &source, out, link, defines, flags: &flags }).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
