@@ -1,7 +1,13 @@
-//! Where cargo put the libraries of this package, for the tests that link or read them.
+//! The libraries of this package as C and C++ programs see them: where cargo put them, and how to link them.
 #![allow(dead_code)]
 
+mod program;
+
+use std::env;
 use std::path::{Path, PathBuf};
+
+#[allow(unused_imports)]
+pub use program::{Link, Program, build, run};
 
 /// The folder of this package.
 pub fn root() -> &'static Path {
@@ -10,21 +16,31 @@ pub fn root() -> &'static Path {
 
 /// The shared library that C programs link.
 pub fn shared_library() -> PathBuf {
-    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-    library(&format!("{DLL_PREFIX}masked_occlusion_culling{DLL_SUFFIX}"))
+    library(Link::Shared).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The static library that C programs link.
 pub fn static_library() -> PathBuf {
-    library("libmasked_occlusion_culling.a")
+    library(Link::Static).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// cargo builds every kind of library that Cargo.toml names before an integration test, and leaves those for C
-/// beside the test's own executable.
-fn library(name: &str) -> PathBuf {
-    let executable = std::env::current_exe().expect("a test has an executable");
-    let folders = executable.ancestors().skip(1).take(2);
-    folders.map(|folder| folder.join(name)).find(|path| path.is_file()).unwrap_or_else(|| {
-        panic!("{name} is not beside {}: was the library built for this target?", executable.display())
-    })
+/// cargo builds every kind of library that Cargo.toml names before a test or an example, and leaves those for C
+/// beside the executable of a test, and in `../deps` of an example.
+fn library(link: Link) -> Result<PathBuf, String> {
+    let name = match (link, cfg!(all(windows, target_env = "msvc"))) {
+        (Link::Static, true) => "masked_occlusion_culling.lib".into(),
+        (Link::Static, false) => "libmasked_occlusion_culling.a".into(),
+        // What is linked is not the library itself, but the list of its functions.
+        (Link::Shared, true) => "masked_occlusion_culling.dll.lib".into(),
+        (Link::Shared, false) => {
+            format!("{}masked_occlusion_culling{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX)
+        }
+    };
+    let executable = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
+    let folder = executable.parent().unwrap_or(Path::new("."));
+    let places = [folder.join(&name), folder.join("../deps").join(&name), folder.join("..").join(&name)];
+    places
+        .into_iter()
+        .find(|path| path.is_file())
+        .ok_or_else(|| format!("{name} is not beside {}: was the library built for this target?", executable.display()))
 }
