@@ -1,0 +1,129 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use glam::Vec3;
+
+/// Culls a scene with a C++ program that uses the library as an engine would, and draws what it found.
+#[derive(Debug, Parser)]
+#[command(name = "demo")]
+pub struct Args {
+    /// A .obj, .gltf or .glb file; without one a small town is generated
+    pub scene: Option<PathBuf>,
+
+    /// Where the camera is, in the file's units (default: chosen for the scene)
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub eye: Option<Vec3>,
+
+    /// What the camera looks at (default: the middle of the scene)
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub look: Option<Vec3>,
+
+    /// Which way is up
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, default_value = "0,1,0")]
+    pub up: Vec3,
+
+    /// Vertical field of view in degrees, from 1 to 170
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, value_parser = field_of_view)]
+    pub fov: f32,
+
+    /// Distance of the near plane (default: a small part of the scene's size)
+    #[arg(long, value_name = "DISTANCE", value_parser = positive)]
+    pub near: Option<f32>,
+
+    /// Width and height of the occlusion buffer in pixels, each from 1 to 16384
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
+    pub size: (u32, u32),
+
+    /// How the buffer takes in triangles
+    #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
+    pub rule: Rule,
+
+    /// The highest instruction set that may be used (default: the best that the processor has)
+    #[arg(long, value_enum)]
+    pub isa: Option<Isa>,
+
+    /// Splits meshes of more triangles than this into pieces (default: for about a thousand objects)
+    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
+    pub split: Option<u32>,
+
+    /// Where the program, the scene and the pictures are written
+    #[arg(long, value_name = "DIR", default_value = "target/demo")]
+    pub out: PathBuf,
+}
+
+/// An update rule of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Rule {
+    ThreeLayer,
+    Quick,
+    Accurate,
+}
+
+impl Rule {
+    /// What the C++ program is compiled with: the switch of the class that engines know.
+    pub fn define(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Rule::ThreeLayer => None,
+            Rule::Quick => Some(("QUICK_MASK", "1")),
+            Rule::Accurate => Some(("QUICK_MASK", "0")),
+        }
+    }
+}
+
+/// An instruction set, in the numbers of the C++ class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Isa {
+    Scalar = -1,
+    Sse2 = 0,
+    Sse41 = 1,
+    Avx2 = 2,
+    Avx512 = 3,
+    Neon = 16,
+}
+
+fn vector(text: &str) -> Result<Vec3, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse::<f32>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers with commas between them are expected, as in 1,2.5,-3".into()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let part = |n: &str| n.parse::<u32>().ok().filter(|n| (1..=16_384).contains(n));
+    let (width, height) = text.split_once(['x', 'X']).ok_or("a size such as 1920x1080 is expected")?;
+    part(width).zip(part(height)).ok_or("each side has from 1 to 16384 pixels".into())
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|n: &f32| n.is_finite() && *n > 0.0).ok_or("a number above 0 is expected".into())
+}
+
+fn field_of_view(text: &str) -> Result<f32, String> {
+    positive(text).ok().filter(|n| (1.0..=170.0).contains(n)).ok_or("an angle from 1 to 170 is expected".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_and_checked() {
+        let args = Args::try_parse_from(["demo", "a.obj", "--eye", "-1,2,3.5", "--size", "640x360"]).unwrap();
+        assert_eq!((args.eye, args.size, args.rule), (Some(Vec3::new(-1.0, 2.0, 3.5)), (640, 360), Rule::ThreeLayer));
+        for bad in [
+            ["--eye", "1,2"],
+            ["--look", "1,2,nan"],
+            ["--size", "0x10"],
+            ["--size", "99999x10"],
+            ["--fov", "180"],
+            ["--near", "0"],
+            ["--split", "0"],
+            ["--isa", "mmx"],
+        ] {
+            assert!(Args::try_parse_from(["demo", bad[0], bad[1]]).is_err(), "{bad:?} is accepted");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! What was culled, in four panels: the view, the occlusion buffer, what lies behind, and all of it from above.
+
+use glam::{Mat4, Vec2, Vec3};
+
+use crate::camera::{Camera, box_corners};
+use crate::exchange::{Fate, Outcome};
+use crate::image::Image;
+use crate::raster::{NOTHING, ZBuffer, orthographic};
+use crate::scene::Scene;
+use crate::shade::Light;
+
+/// Pixels of a panel; the picture is two by two of them.
+const WIDTH: usize = 800;
+const HEIGHT: usize = 450;
+
+const DRAWN: Vec3 = Vec3::new(0.36, 0.86, 0.74);
+const CULLED: Vec3 = Vec3::new(1.0, 0.36, 0.28);
+const OUTSIDE: Vec3 = Vec3::new(0.62, 0.64, 0.68);
+const WHITE: Vec3 = Vec3::new(0.95, 0.96, 0.97);
+const DARK: Vec3 = Vec3::new(0.10, 0.115, 0.135);
+
+/// All four panels.
+pub fn compose(scene: &Scene, camera: &Camera, outcome: &Outcome, size: (u32, u32)) -> Image {
+    let light = Light::new(scene, camera.up, camera.look - camera.eye);
+    let count = |fate| outcome.fates.iter().filter(|f| **f == fate).count();
+    let (drawn, culled, outside) = (count(Fate::Visible), count(Fate::Culled), count(Fate::Outside));
+    let mut picture = Image::new(WIDTH * 2, HEIGHT * 2, DARK);
+
+    let view = view(scene, camera, outcome, &light);
+    let behind = behind(scene, camera, outcome, &light, &view);
+    let mut panel = |mut image: Image, column: usize, row: usize, label: &[(&str, Vec3)]| {
+        image.label(16, 14, label);
+        picture.paste(&image, column * WIDTH, row * HEIGHT);
+    };
+    panel(view.halved(), 0, 0, &[(&format!("drawn: {drawn} objects"), WHITE)]);
+    panel(behind.halved(), 1, 0, &[("behind what is drawn: ", WHITE), (&format!("{culled} culled"), CULLED)]);
+    panel(depth(outcome, size, WIDTH, HEIGHT), 0, 1, &[(&format!("occlusion buffer, {} x {}", size.0, size.1), WHITE)]);
+    panel(
+        from_above(scene, camera, outcome, &light),
+        1,
+        1,
+        &[
+            ("from above: ", WHITE),
+            (&format!("{drawn} drawn "), DRAWN),
+            (&format!("{culled} culled "), CULLED),
+            (&format!("{outside} outside of the view"), OUTSIDE),
+        ],
+    );
+    for i in 0..WIDTH * 2 {
+        for thick in -2..2 {
+            picture.blend(i as i32, HEIGHT as i32 + thick, DARK, 1.0);
+            picture.blend(WIDTH as i32 + thick, i as i32, DARK, 1.0);
+        }
+    }
+    picture
+}
+
+/// The depth of every pixel: near is bright, and nothing is dark. The scale is logarithmic.
+pub fn depth(outcome: &Outcome, (from_w, from_h): (u32, u32), width: usize, height: usize) -> Image {
+    let mut known: Vec<f32> = outcome.depth.iter().copied().filter(|d| *d > 0.0).collect();
+    known.sort_unstable_by(f32::total_cmp);
+    let quantile = |q: f32| known.get((known.len() as f32 * q) as usize).map_or(1.0, |d| d.ln());
+    let (far, near) = (quantile(0.002), quantile(0.99));
+    let stops = [0x10121f, 0x3b2a63, 0x8c3a70, 0xdc6a55, 0xf9b66a, 0xfcf3c4]
+        .map(|c: u32| Vec3::new((c >> 16) as f32, (c >> 8 & 255) as f32, (c & 255) as f32) / 255.0);
+    let colour = |d: f32| {
+        if d <= 0.0 {
+            return Vec3::new(0.02, 0.025, 0.04);
+        }
+        let t = (0.08 + 0.92 * (d.ln() - far) / (near - far).max(1e-6)).clamp(0.0, 1.0) * (stops.len() - 1) as f32;
+        let i = (t as usize).min(stops.len() - 2);
+        stops[i].lerp(stops[i + 1], t - i as f32)
+    };
+    let mut image = Image::new(width, height, Vec3::ZERO);
+    for (i, pixel) in image.pixels.iter_mut().enumerate() {
+        // The mean of the buffer's pixels that this one covers, one at least.
+        let range = |at: usize, to: usize, from: u32| {
+            let lo = at * from as usize / to;
+            lo..((at + 1) * from as usize / to).max(lo + 1)
+        };
+        let (mut sum, mut n) = (Vec3::ZERO, 0.0);
+        for y in range(i / width, height, from_h) {
+            for x in range(i % width, width, from_w) {
+                sum += colour(outcome.depth[y * from_w as usize + x]);
+                n += 1.0;
+            }
+        }
+        *pixel = sum / n;
+    }
+    image
+}
+
+/// The camera for a panel: it sees what the given one sees and, where the panel is wider, more.
+fn panel_clip(camera: &Camera) -> Mat4 {
+    let aspect = WIDTH as f32 / HEIGHT as f32;
+    let tall = if camera.aspect > aspect { camera.aspect / aspect } else { 1.0 };
+    let fov = 2.0 * ((camera.fov / 2.0).tan() * tall).atan();
+    Camera { aspect, fov, ..*camera }.clip_from_world()
+}
+
+/// What is drawn, at twice the size of a panel.
+fn view(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) -> Image {
+    let clip = panel_clip(camera);
+    let mut buffer = ZBuffer::new(WIDTH * 2, HEIGHT * 2);
+    draw(&mut buffer, scene, &clip, camera.near, |i| outcome.fates[i] != Fate::Culled);
+    let sky = |y: f32| Vec3::new(0.40, 0.60, 0.84).lerp(Vec3::new(0.83, 0.89, 0.94), (y * 1.7).min(1.0));
+    let (lo, hi) = scene.bounds();
+    light.picture(scene, &buffer, &clip, |_, colour| colour, sky, Some((camera.eye, (hi - lo).length() * 0.9)))
+}
+
+/// The view in grey, with what was culled shining through.
+fn behind(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, view: &Image) -> Image {
+    let clip = panel_clip(camera);
+    let mut buffer = ZBuffer::new(view.width, view.height);
+    draw(&mut buffer, scene, &clip, camera.near, |i| outcome.fates[i] == Fate::Culled);
+    let culled = light.picture(scene, &buffer, &clip, |_, _| CULLED.powf(1.3), |_| Vec3::ZERO, None);
+    let mut image = Image::new(view.width, view.height, Vec3::ZERO);
+    for (i, pixel) in image.pixels.iter_mut().enumerate() {
+        let grey = Vec3::splat(view.pixels[i].dot(Vec3::new(0.3, 0.59, 0.11)));
+        *pixel = if buffer.owner[i].0 == NOTHING {
+            grey * 0.62 + DARK * 0.3
+        } else {
+            // Edges between objects stand out where neighbours differ.
+            let neighbour = buffer.owner[if i % view.width == 0 { i } else { i - 1 }].0;
+            let edge = if neighbour == buffer.owner[i].0 { 1.0 } else { 0.6 };
+            grey * 0.22 + culled.pixels[i] * 0.82 * edge
+        };
+    }
+    image
+}
+
+/// All objects from above, the camera on the left, looking to the right.
+fn from_above(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) -> Image {
+    let ahead = (camera.look - camera.eye).reject_from_normalized(camera.up);
+    let ahead = ahead.try_normalize().unwrap_or(camera.up.any_orthonormal_vector());
+    let side = ahead.cross(camera.up);
+    let into = camera.up.cross(ahead * 0.8 + side * 0.6);
+    let direction = (into * 0.9 - camera.up).normalize();
+    let mut points = vec![camera.eye];
+    for (object, _) in scene.objects.iter().zip(&outcome.fates).filter(|(_, f)| **f != Fate::Outside) {
+        points.extend(box_corners(object.lo, object.hi));
+    }
+    let clip = orthographic(&points, direction, camera.up, WIDTH as f32, HEIGHT as f32);
+
+    let render = |wanted: &dyn Fn(Fate) -> bool| {
+        let mut buffer = ZBuffer::new(WIDTH * 2, HEIGHT * 2);
+        draw(&mut buffer, scene, &clip, f32::NEG_INFINITY, |i| wanted(outcome.fates[i]));
+        let paint = |i: usize, colour: Vec3| {
+            let grey = 0.35 + 0.65 * colour.dot(Vec3::new(0.3, 0.59, 0.11));
+            grey * match outcome.fates[i] {
+                Fate::Visible => DRAWN,
+                Fate::Culled => CULLED * 0.9,
+                Fate::Outside => Vec3::splat(0.3),
+            }
+        };
+        let image = light.picture(scene, &buffer, &clip, paint, |_| DARK, None);
+        (buffer, image)
+    };
+    // What is drawn shows through what is above it.
+    let (_, mut image) = render(&|_| true);
+    let (buffer, drawn) = render(&|fate| fate == Fate::Visible);
+    for (i, pixel) in image.pixels.iter_mut().enumerate() {
+        if buffer.owner[i].0 != NOTHING {
+            *pixel = pixel.lerp(drawn.pixels[i], 0.8);
+        }
+    }
+
+    let mut image = image.halved();
+    let on_panel = |p: Vec3| {
+        let p = clip.project_point3(p);
+        Vec2::new((p.x * 0.5 + 0.5) * WIDTH as f32, (0.5 - p.y * 0.5) * HEIGHT as f32)
+    };
+    let eye = on_panel(camera.eye);
+    let (lo, hi) = scene.bounds();
+    let spread = (camera.fov / 2.0).tan() * camera.aspect;
+    for sign in [-1.0, 1.0] {
+        let edge = (ahead + side * spread * sign).normalize() * (hi - lo).length();
+        image.line(eye, on_panel(camera.eye + edge), 2.0, WHITE, 0.85);
+    }
+    image.line(eye, eye, 13.0, DARK, 1.0);
+    image.line(eye, eye, 9.0, WHITE, 1.0);
+    image
+}
+
+fn draw(buffer: &mut ZBuffer, scene: &Scene, clip: &Mat4, near: f32, wanted: impl Fn(usize) -> bool) {
+    for (id, object) in scene.objects.iter().enumerate().filter(|(id, _)| wanted(*id)) {
+        buffer.draw(object, id as u32, clip, near);
+    }
+}

@@ -1,0 +1,67 @@
+//! What every other module speaks of: objects, each with a mesh of its own.
+
+use glam::Vec3;
+
+/// Triangles with a colour each. Counter-clockwise is outside, unless the object is two-sided.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    pub positions: Vec<Vec3>,
+    pub triangles: Vec<[u32; 3]>,
+    pub colours: Vec<Vec3>,
+}
+
+/// A piece of the scene that is drawn or culled as a whole.
+#[derive(Clone, Debug)]
+pub struct Object {
+    pub mesh: Mesh,
+    /// Is it worth drawing into the occlusion buffer?
+    pub occluder: bool,
+    /// May its triangles be seen from both sides?
+    pub two_sided: bool,
+    /// Bounding box.
+    pub lo: Vec3,
+    pub hi: Vec3,
+}
+
+impl Object {
+    /// An object with the bounds of its mesh; `None` where the mesh holds no triangle.
+    pub fn new(mesh: Mesh, occluder: bool, two_sided: bool) -> Option<Self> {
+        if mesh.triangles.is_empty() {
+            return None;
+        }
+        let (lo, hi) = bounds(mesh.positions.iter().copied());
+        Some(Self { mesh, occluder, two_sided, lo, hi })
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.mesh.triangles[triangle].map(|i| self.mesh.positions[i as usize])
+    }
+}
+
+/// All objects.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    pub objects: Vec<Object>,
+}
+
+impl Scene {
+    /// Adds a mesh as an object, if there is anything in it.
+    pub fn add(&mut self, mesh: Mesh, occluder: bool, two_sided: bool) {
+        self.objects.extend(Object::new(mesh, occluder, two_sided));
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        bounds(self.objects.iter().flat_map(|o| [o.lo, o.hi]))
+    }
+
+    pub fn num_triangles(&self) -> usize {
+        self.objects.iter().map(|o| o.mesh.triangles.len()).sum()
+    }
+}
+
+/// The smallest box around points.
+pub fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
+    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
+}
