@@ -1,0 +1,114 @@
+//! Triangles that cross the near plane, or reach beyond any guard band, against their exact intersection with
+//! every pixel's ray. A clipped vertex has to be snapped too, so edges may move by a little; depth may not come
+//! nearer than the true plane does within that little.
+
+mod oracle;
+mod support;
+
+use std::cell::RefCell;
+
+use masked_occlusion_culling::{MaskedOcclusionCulling, YAxis};
+use oracle::homogeneous::{Homogeneous, Place};
+use proptest::prelude::*;
+use support::{check, draw_clip, is_empty, name, objects, read};
+
+const SIZE: (usize, usize) = (96, 64);
+
+/// How far an edge may move, in pixels.
+const TOLERANCE: f64 = 1.0 / 16.0;
+
+type Corners = [[f32; 3]; 3];
+
+fn compare(
+    moc: &mut MaskedOcclusionCulling,
+    v: &Corners,
+    near: f32,
+    whole: bool,
+    depth: &mut Vec<f32>,
+) -> Result<(), String> {
+    moc.set_near_clip_plane(near).unwrap();
+    moc.clear_buffer().unwrap();
+    draw_clip(moc, &v.map(|[x, y, w]| [x, y, 0.0, w]));
+    read(moc, depth);
+    let wide = v.map(|c| c.map(f64::from));
+    let Some(exact) = Homogeneous::new(&wide, f64::from(near), SIZE, moc.y_axis() == YAxis::Up) else { return Ok(()) };
+    for (i, &stored) in depth.iter().enumerate() {
+        let (column, row) = (i % SIZE.0, i / SIZE.0);
+        let fail = |why: &str| Err(format!("{}, near {near:e}: ({column}, {row}) {why}\n{v:?}", name(moc)));
+        match exact.place(column, row, TOLERANCE) {
+            Place::Inside if whole && is_empty(stored) => return fail("is missed"),
+            Place::Outside if !is_empty(stored) => return fail("is covered falsely"),
+            _ => {}
+        }
+        // Nothing that is drawn is nearer than the near plane.
+        let here = exact.depth(column, row) + TOLERANCE * exact.slope();
+        let most = if near > 0.0 { here.min(f64::from(1.0 / near) * (1.0 + 1e-6)) } else { here };
+        if stored.is_nan() || f64::from(stored) > most * (1.0 + 1e-6) {
+            return fail(&format!("is too near: {stored:e}, at most {most:e}"));
+        }
+    }
+    Ok(())
+}
+
+fn run(cases: u32, seed: u64, strategy: &impl Strategy<Value = (Corners, f32)>, whole: bool) {
+    let state = RefCell::new((objects(SIZE), Vec::new()));
+    check(cases, seed, strategy, |(v, near)| {
+        let (objects, depth) = &mut *state.borrow_mut();
+        objects.iter_mut().try_for_each(|moc| compare(moc, &v, near, whole, depth))
+    });
+}
+
+fn corner(w: impl Strategy<Value = f32>) -> impl Strategy<Value = [f32; 3]> {
+    (-3.0..3.0f32, -3.0..3.0f32, w).prop_map(|(x, y, w)| [x, y, w])
+}
+
+/// One or two corners behind, the others in front, and then turned to any place.
+fn crossing() -> impl Strategy<Value = Corners> {
+    (corner(-4.0..0.0f32), corner(-4.0..4.0f32), corner(0.5..6.0f32), 0..3usize).prop_map(|(a, b, c, turn)| {
+        let mut v = [a, b, c];
+        v.rotate_left(turn);
+        v
+    })
+}
+
+#[test]
+fn crossing_the_near_plane() {
+    run(3000, 1, &(crossing(), 0.05..1.0f32), true);
+}
+
+/// With the plane at the eye the part that is too close to project may be left out, which is safe.
+#[test]
+fn crossing_the_eye() {
+    run(2000, 2, &(crossing(), Just(0.0f32)), false);
+}
+
+/// A floor under the eye: what every game draws.
+#[test]
+fn floors_under_the_eye() {
+    let floor = (0.01..2.0f32, 1.0..500.0f32, 0.05..0.3f32)
+        .prop_map(|(height, far, near)| ([[-far, -height, -far], [far, -height, -far], [0.0, -height, far]], near));
+    run(1000, 3, &floor, true);
+}
+
+/// Corners up to a million pixels away: no guard band holds them, so the sides are clipped too.
+#[test]
+fn beyond_the_guard_band() {
+    let far = prop_oneof![-3.0..3.0f32, -300.0..300.0f32, -20_000.0..20_000.0f32];
+    let corner = (far.clone(), far, 0.5..8.0f32).prop_map(|(x, y, w)| [x * w, y * w, w]);
+    run(3000, 4, &([corner.clone(), corner.clone(), corner], Just(0.1f32)), true);
+}
+
+/// Behind and far out at once.
+#[test]
+fn near_plane_and_guard_band_at_once() {
+    let far = prop_oneof![-3.0..3.0f32, -3000.0..3000.0f32];
+    let corner = (far.clone(), far, prop_oneof![-2.0..8.0f32, 0.1..0.2f32]).prop_map(|(x, y, w)| [x, y, w]);
+    run(3000, 5, &([corner.clone(), corner.clone(), corner], 0.1..0.5f32), true);
+}
+
+/// General w everywhere, nothing to clip: the same promise.
+#[test]
+fn any_w_in_front() {
+    let corner = (-1.5..1.5f32, -1.5..1.5f32, 0.3..1000.0f32).prop_map(|(x, y, w)| [x * w, y * w, w]);
+    run(3000, 6, &([corner.clone(), corner.clone(), corner], Just(0.1f32)), true);
+}

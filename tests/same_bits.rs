@@ -1,0 +1,148 @@
+//! Buffer, answers and statistics are the same bits on every instruction set, and the same on every architecture:
+//! the hashes of generated scenes are equal and are those in this file. A change that means to change the bits
+//! prints the new ones with PRINT_HASHES=1 cargo test --test same_bits -- --nocapture.
+
+mod scenes;
+
+use glam::Mat4;
+use masked_occlusion_culling::{
+    Allocator, BackfaceWinding, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, Statistics, UpdateRule,
+    VertexLayout, Vertices, YAxis,
+};
+use scenes::Scene;
+
+/// FNV-1a.
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, value: u64) {
+        for byte in value.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    }
+}
+
+fn add_statistics(hash: &mut Hash, s: &Statistics) {
+    let (o, q) = (&s.occluders, &s.occludees);
+    let counts = [
+        o.num_processed_triangles,
+        o.num_rasterized_triangles,
+        o.num_tiles_traversed,
+        o.num_tiles_updated,
+        o.num_tiles_merged,
+        o.num_dropped_triangles,
+        q.num_processed_rectangles,
+        q.num_processed_triangles,
+        q.num_rasterized_triangles,
+        q.num_tiles_traversed,
+    ];
+    counts.iter().for_each(|n| hash.add(*n as u64));
+}
+
+/// Hashes of the buffer, of the answers and of the statistics.
+fn hashes(scene: &Scene, implementation: Implementation, rule: UpdateRule) -> [u64; 3] {
+    let (w, h) = (333, 205);
+    let mut all = [Hash::new(), Hash::new(), Hash::new()];
+    let [buffer, answers, statistics] = &mut all;
+    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
+    let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
+    let mut depth = vec![0.0; w * h];
+    for y_axis in [YAxis::Down, YAxis::Up] {
+        for winding in [BackfaceWinding::Clockwise, BackfaceWinding::None] {
+            let settings = Settings { implementation, update_rule: rule, y_axis, allocator: Allocator::SYSTEM };
+            let mut moc = MaskedOcclusionCulling::new(settings);
+            moc.set_resolution(w as u32, h as u32).unwrap();
+            moc.set_near_clip_plane(scene.near).unwrap();
+            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
+            let options = DrawOptions { model_to_clip, winding, ..DrawOptions::default() };
+            for object in &scene.objects {
+                let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
+                answers.add(moc.test_rect(x0, y0, x1, y1, nearest).unwrap() as u64);
+                answers.add(moc.test_triangles(vertices, object, &options).unwrap() as u64);
+                answers.add(moc.render_triangles(vertices, object, &options).unwrap() as u64);
+            }
+            moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+            depth.iter().for_each(|d| buffer.add(u64::from(d.to_bits())));
+            add_statistics(statistics, &moc.statistics());
+        }
+    }
+    all.map(|h| h.0)
+}
+
+const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+
+/// By scene, then rule: buffer, answers, statistics.
+const GOLDEN: [[[u64; 3]; 3]; 5] = [[[0; 3]; 3]; 5];
+
+#[test]
+fn every_instruction_set_gives_the_golden_bits() {
+    let print = std::env::var_os("PRINT_HASHES").is_some();
+    let mut wrong = Vec::new();
+    for (scene, golden) in scenes::all().iter().zip(&GOLDEN) {
+        for (rule, golden) in RULES.into_iter().zip(golden) {
+            for (i, &implementation) in Implementation::available().iter().enumerate() {
+                let got = hashes(scene, implementation, rule);
+                if print && i == 0 {
+                    println!("{} {rule:?}: [{:#018x}, {:#018x}, {:#018x}],", scene.name, got[0], got[1], got[2]);
+                }
+                for (part, what) in ["buffer", "answers", "statistics"].into_iter().enumerate() {
+                    if got[part] != golden[part] {
+                        wrong.push(format!("{} {rule:?} {implementation:?}: {what} {:#018x}", scene.name, got[part]));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "other hashes than those in this file:\n{}", wrong.join("\n"));
+}
+
+/// What differs, pixel by pixel, when the hashes do: the first object whose drawing parts two instruction sets.
+#[test]
+fn every_instruction_set_agrees_after_every_object() {
+    let (w, h) = (160, 90);
+    for scene in scenes::all() {
+        for rule in RULES {
+            let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
+            let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
+            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
+            let options = DrawOptions { model_to_clip, ..DrawOptions::default() };
+            let mut objects: Vec<_> = Implementation::available()
+                .iter()
+                .map(|&implementation| {
+                    let settings = Settings { implementation, update_rule: rule, ..Settings::default() };
+                    let mut moc = MaskedOcclusionCulling::new(settings);
+                    moc.set_resolution(w, h).unwrap();
+                    moc.set_near_clip_plane(scene.near).unwrap();
+                    moc
+                })
+                .collect();
+            let mut buffers = vec![vec![0.0f32; (w * h) as usize]; objects.len()];
+            for (i, object) in scene.objects.iter().enumerate() {
+                for (moc, depth) in objects.iter_mut().zip(&mut buffers) {
+                    moc.render_triangles(vertices, object, &options).unwrap();
+                    moc.compute_pixel_depth_buffer(depth, false).unwrap();
+                }
+                for (moc, depth) in objects.iter().zip(&buffers).skip(1) {
+                    let differs = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits();
+                    if let Some(p) = depth.iter().zip(&buffers[0]).position(differs) {
+                        panic!(
+                            "{} {rule:?}, object {i}: ({}, {}) is {:e} with {:?}, {:e} with {:?}",
+                            scene.name,
+                            p % w as usize,
+                            p / w as usize,
+                            depth[p],
+                            moc.implementation(),
+                            buffers[0][p],
+                            objects[0].implementation()
+                        );
+                    }
+                    assert_eq!(moc.statistics(), objects[0].statistics(), "{} {rule:?}, object {i}", scene.name);
+                }
+            }
+        }
+    }
+}
