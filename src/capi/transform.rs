@@ -42,7 +42,9 @@ pub unsafe extern "C" fn MOC_TransformVertices(
         }
         let source = VertexSource { base: vertices.cast(), layout };
         // SAFETY: the caller's contract: so many vertices can be read and written.
-        unsafe { crate::transform::transform_raw(&glam::Mat4::from_cols_array(&matrix), source, out, n_vertices as usize) };
+        unsafe {
+            crate::transform::transform_raw(&glam::Mat4::from_cols_array(&matrix), source, out, n_vertices as usize)
+        };
         Ok(())
     })
 }

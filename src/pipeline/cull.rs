@@ -328,11 +328,8 @@ impl<S: Simd> Group<S> {
 
         if !query {
             // Boxes without a pixel centre on the screen.
-            let centre = |x: S::F| s.sra::<8>(s.add_i(s.round(x), s.i(127)));
-            let some = |min: S::F, max: S::F, size: u32| {
-                s.gt_i(s.min_i(centre(max), s.i(size as i32)), s.max_i(centre(min), s.i(0)))
-            };
-            kept = s.and_m(kept, s.and_m(some(min_x, max_x, buffer.width()), some(min_y, max_y, buffer.height())));
+            let across = holds_centre(s, min_x, max_x, buffer.width());
+            kept = s.and_m(kept, s.and_m(across, holds_centre(s, min_y, max_y, buffer.height())));
         }
         Sieve { in_view, kept, irregular }
     }
@@ -340,23 +337,40 @@ impl<S: Simd> Group<S> {
     /// Triangles with all corners outside of one plane.
     #[inline(always)]
     fn outside(&self, s: S, keep_near: bool, camera: &Camera) -> u32 {
-        let (low_row, high_row) =
-            if camera.rows_run_down() { (outcode::ABOVE, outcode::BELOW) } else { (outcode::BELOW, outcode::ABOVE) };
-        let code = |k: usize| {
-            let (x, y) = (self.x[k], self.y[k]);
-            let bit = |m: S::M, bit: u32| s.select_i(m, s.i(bit as i32), s.i(0));
-            let beyond = |size: f32| s.f(2.0 * size + CLEARLY);
-            let across = s.or(
-                bit(s.lt(x, s.f(-CLEARLY)), outcode::LEFT),
-                bit(s.lt(beyond(camera.half_width), x), outcode::RIGHT),
-            );
-            let down = s.or(bit(s.lt(y, s.f(-CLEARLY)), low_row), bit(s.lt(beyond(camera.half_height), y), high_row));
-            s.select_i(s.eq(x, x), s.or(across, down), s.bits(x))
-        };
         let planes = outcode::ALL & if keep_near { !outcode::NEAR } else { !0 };
-        let shared = s.and(s.and(code(0), s.and(code(1), code(2))), s.i(planes as i32));
+        let codes = s.and(self.code(s, camera, 0), s.and(self.code(s, camera, 1), self.code(s, camera, 2)));
+        let shared = s.and(codes, s.i(planes as i32));
         !s.mask_bits(s.eq_i(shared, s.i(0)))
     }
+    /// Outcodes of corner `k`: as marked, or else by its place on the screen.
+    #[inline(always)]
+    fn code(&self, s: S, camera: &Camera, k: usize) -> S::I {
+        let (low_row, high_row) =
+            if camera.rows_run_down() { (outcode::ABOVE, outcode::BELOW) } else { (outcode::BELOW, outcode::ABOVE) };
+        let (x, y) = (self.x[k], self.y[k]);
+        let across = s.or(
+            bit_where(s, s.lt(x, s.f(-CLEARLY)), outcode::LEFT),
+            bit_where(s, s.lt(s.f(2.0 * camera.half_width + CLEARLY), x), outcode::RIGHT),
+        );
+        let down = s.or(
+            bit_where(s, s.lt(y, s.f(-CLEARLY)), low_row),
+            bit_where(s, s.lt(s.f(2.0 * camera.half_height + CLEARLY), y), high_row),
+        );
+        s.select_i(s.eq(x, x), s.or(across, down), s.bits(x))
+    }
+}
+
+#[inline(always)]
+pub(super) fn bit_where<S: Simd>(s: S, m: S::M, bit: u32) -> S::I {
+    s.select_i(m, s.i(bit as i32), s.i(0))
+}
+
+/// Does a pixel's centre, of `size` pixels, lie from `min` to before `max`?
+#[inline(always)]
+fn holds_centre<S: Simd>(s: S, min: S::F, max: S::F, size: u32) -> S::M {
+    let first = s.sra::<8>(s.add_i(s.round(min), s.i(127)));
+    let end = s.sra::<8>(s.add_i(s.round(max), s.i(127)));
+    s.gt_i(s.min_i(end, s.i(size as i32)), s.max_i(first, s.i(0)))
 }
 
 /// Packs corners as survivors have them.

@@ -9,6 +9,7 @@
 
 use glam::Mat4;
 
+use super::cull::bit_where;
 use super::scratch::Scratch;
 use crate::YAxis;
 use crate::simd::Simd;
@@ -104,11 +105,10 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     if s.mask_bits(regular) == (1 << S::LANES) - 1 {
         return [column, row, z];
     }
-    let code = |m: S::M, bit: u32| s.select_i(m, s.i(bit as i32), s.i(0));
     let minus_w = s.sub(s.f(0.0), w);
-    let mut marks = s.or(code(s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
-    marks = s.or(marks, s.or(code(s.lt(x, minus_w), outcode::LEFT), code(s.lt(w, x), outcode::RIGHT)));
-    marks = s.or(marks, s.or(code(s.lt(y, minus_w), outcode::BELOW), code(s.lt(w, y), outcode::ABOVE)));
+    let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
+    marks = s.or(marks, s.or(bit_where(s, s.lt(x, minus_w), outcode::LEFT), bit_where(s, s.lt(w, x), outcode::RIGHT)));
+    marks = s.or(marks, s.or(bit_where(s, s.lt(y, minus_w), outcode::BELOW), bit_where(s, s.lt(w, y), outcode::ABOVE)));
     [s.select(regular, column, s.from_bits(marks)), s.select(regular, row, s.f(0.0)), z]
 }
 

@@ -136,26 +136,18 @@ pub(super) unsafe fn set_up<S: Simd>(
     // SAFETY: the caller's contract.
     let packed = unsafe { s.load_i(survivors) };
     let active = s.first(n);
-    let local = |shift: u32| {
-        let mask = s.i((1 << LOCAL_BITS) - 1);
-        match shift {
-            0 => s.and(packed, mask),
-            1 => s.and(s.sra::<{ LOCAL_BITS }>(packed), mask),
-            _ => s.and(s.sra::<{ 2 * LOCAL_BITS }>(packed), mask),
-        }
-    };
-    let (i0, i1, i2) = (local(0), local(1), local(2));
+    let mask = s.i((1 << LOCAL_BITS) - 1);
+    let i0 = s.and(packed, mask);
+    let i1 = s.and(s.sra::<{ LOCAL_BITS }>(packed), mask);
+    let i2 = s.and(s.sra::<{ 2 * LOCAL_BITS }>(packed), mask);
     // SAFETY: local numbers have ten bits, so that every gather stays inside of the scratch.
     let (a, b, c) = unsafe { (corner(s, scratch, i0), corner(s, scratch, i1), corner(s, scratch, i2)) };
 
     // The topmost corner first.
     let b_top = s.and_m(s.lt(b[1], a[1]), s.le(b[1], c[1]));
     let c_top = s.and_m(s.lt(c[1], a[1]), s.lt(c[1], b[1]));
-    let turn = |x: Corner<S>, y: Corner<S>, z: Corner<S>| -> Corner<S> {
-        let pick = |k: usize| s.select(b_top, y[k], s.select(c_top, z[k], x[k]));
-        [pick(0), pick(1), pick(2)]
-    };
-    let (v0, mut v1, mut v2) = (turn(a, b, c), turn(b, c, a), turn(c, a, b));
+    let (v0, mut v1, mut v2) =
+        (turn(s, b_top, c_top, a, b, c), turn(s, b_top, c_top, b, c, a), turn(s, b_top, c_top, c, a, b));
     if facing.both {
         let back = s.lt(doubled_area(s, v0, v1, v2).0, s.f(0.0));
         for k in 0..3 {
@@ -168,11 +160,10 @@ pub(super) unsafe fn set_up<S: Simd>(
     let (min_x, max_x) = (s.min(v0[0], s.min(v1[0], v2[0])), s.max(v0[0], s.max(v1[0], v2[0])));
     let max_y = s.max(v1[1], v2[1]);
     let (low, high) = if query { (-QUERY_SLACK, 256 + QUERY_SLACK) } else { (127, 127) };
-    let pixel = |x: S::F, add: i32| s.sra::<8>(s.add_i(s.round(x), s.i(add)));
-    let column0 = s.max_i(pixel(min_x, low), s.i(0));
-    let column1 = s.min_i(pixel(max_x, high), s.i(buffer.width() as i32));
-    let row0 = s.max_i(pixel(v0[1], low), s.i(0));
-    let row1 = s.min_i(pixel(max_y, high), s.i(buffer.height() as i32));
+    let column0 = s.max_i(pixel(s, min_x, low), s.i(0));
+    let column1 = s.min_i(pixel(s, max_x, high), s.i(buffer.width() as i32));
+    let row0 = s.max_i(pixel(s, v0[1], low), s.i(0));
+    let row1 = s.min_i(pixel(s, max_y, high), s.i(buffer.height() as i32));
     let inside = s.and_m(s.gt_i(column1, column0), s.gt_i(row1, row0));
     let mut alive = s.and_m(active, inside);
     if !query {
@@ -229,14 +220,10 @@ pub(super) unsafe fn set_up<S: Simd>(
     let few = s
         .and_not_m(s.or_m(s.gt_i(s.sub_i(tile_x1, tile_x0), s.i(1)), s.gt_i(s.sub_i(tile_y1, tile_y0), s.i(1))), alive);
     if s.mask_bits(few) != 0 {
-        let row = |y: S::I| s.mul(s.to_f(y), s.f(buffer.tiles_w() as f32));
-        let tile = |y: S::F, x: S::I| s.select_i(few, s.add_i(s.round(y), x), s.i(0));
-        let (upper, lower) = (row(tile_y0), row(tile_y1));
         // SAFETY: lanes of `few` name tiles inside of the buffer, the others name the first.
         let least = unsafe {
-            let at = |index: S::I| s.gather(buffer.least(), index);
-            let upper = s.min(at(tile(upper, tile_x0)), at(tile(upper, tile_x1)));
-            s.min(upper, s.min(at(tile(lower, tile_x0)), at(tile(lower, tile_x1))))
+            let upper = s.min(least_at(s, buffer, few, tile_x0, tile_y0), least_at(s, buffer, few, tile_x1, tile_y0));
+            s.min(upper, s.min(least_at(s, buffer, few, tile_x0, tile_y1), least_at(s, buffer, few, tile_x1, tile_y1)))
         };
         let hidden = if query { s.lt(nearest, least) } else { s.le(nearest, least) };
         lanes &= !s.mask_bits(s.and_m(few, hidden));
@@ -252,38 +239,18 @@ pub(super) unsafe fn set_up<S: Simd>(
     let up = s.lt(v2[1], v1[1]);
     let sign = s.to_d(s.select(down, s.f(1.0), s.f(-1.0)));
     let (dx_m, dy_m) = (s.mul_d(s.sub_d(dx_l, dx_r), sign), s.mul_d(s.sub_d(dy_l, dy_r), sign));
-    // From the row's centre to the corner, in rows; from the corner to pixel 0's centre (its left side for a query).
-    let rows = |y: S::D| s.mul_d(s.sub_d(s.d(128.0), y), s.d(1.0 / 256.0));
-    let columns = |x: S::D| s.mul_d(s.sub_d(x, s.d(if query { 0.0 } else { 128.0 })), s.d(1.0 / 256.0));
-    let edge = |x: S::D, y: S::D, dx: S::D, dy: S::D| -> [S::D; 3] {
-        // A quarter stands for zero: such an edge is put nowhere below.
-        let inverse = s.div_d(s.d(1.0), s.max_d(dy, s.d(0.25)));
-        let slope = s.mul_d(dx, inverse);
-        let at = s.add_d(columns(x), s.mul_d(slope, rows(y)));
-        if query {
-            // The row's upper and lower end instead of its centre, and what snapping may have moved.
-            let steep = s.max_d(slope, s.sub_d(s.d(0.0), slope));
-            let slack = s.add_d(s.mul_d(steep, s.d(0.5 + 1.0 / 128.0)), s.d(1.0 / 128.0));
-            [s.sub_d(at, slack), s.add_d(at, s.add_d(slack, s.d(1.0))), slope]
-        } else {
-            let at = s.add_d(at, s.sub_d(s.d(1.0), s.mul_d(inverse, s.d(1.0 / 512.0))));
-            [at, at, slope]
-        }
-    };
-    let nowhere = |is: S::M, x: f32| s.to_d(s.select(is, s.f(x), s.f(0.0)));
     // A query keeps triangles that snapping made degenerate or turned over: their bounding box stands for them.
-    let flat = s.le(area, s.f(0.0));
-    let flat_or = |m: S::M| if query { s.or_m(flat, m) } else { m };
-    let [_, right, right_slope] = edge(x0, y0, dx_r, dy_r);
-    store!(d right, s.add_d(right, nowhere(flat_or(s.eq(v0[1], v1[1])), NOWHERE)));
+    let flat = s.and_m(s.le(area, s.f(0.0)), if query { active } else { s.first(0) });
+    let [_, right, right_slope] = edge(s, query, [x0, y0], [dx_r, dy_r]);
+    store!(d right, s.add_d(right, nowhere(s, s.or_m(flat, s.eq(v0[1], v1[1])), NOWHERE)));
     store!(d right_slope, right_slope);
-    let [left, _, left_slope] = edge(x0, y0, dx_l, dy_l);
-    store!(d left, s.add_d(left, nowhere(flat_or(s.eq(v0[1], v2[1])), -NOWHERE)));
+    let [left, _, left_slope] = edge(s, query, [x0, y0], [dx_l, dy_l]);
+    store!(d left, s.add_d(left, nowhere(s, s.or_m(flat, s.eq(v0[1], v2[1])), -NOWHERE)));
     store!(d left_slope, left_slope);
-    let [middle_left, middle_right, middle_slope] = edge(x1, y1, dx_m, dy_m);
+    let [middle_left, middle_right, middle_slope] = edge(s, query, [x1, y1], [dx_m, dy_m]);
     let all = s.le(s.f(0.0), s.f(0.0));
-    store!(d middle_left, s.add_d(middle_left, nowhere(flat_or(s.and_not_m(up, all)), -NOWHERE)));
-    store!(d middle_right, s.add_d(middle_right, nowhere(flat_or(s.and_not_m(down, all)), NOWHERE)));
+    store!(d middle_left, s.add_d(middle_left, nowhere(s, s.or_m(flat, s.and_not_m(up, all)), -NOWHERE)));
+    store!(d middle_right, s.add_d(middle_right, nowhere(s, s.or_m(flat, s.and_not_m(down, all)), NOWHERE)));
     store!(d middle_slope, middle_slope);
     store!(i row0, row0);
     store!(i row1, row1);
@@ -363,4 +330,59 @@ fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (
     let left = (s.sub_d(s.to_d(v2[0]), x0), s.sub_d(s.to_d(v2[1]), y0));
     let area = s.sub_d(s.mul_d(right.0, left.1), s.mul_d(left.0, right.1));
     (s.d_to_f(area), Deltas { right, left })
+}
+
+/// The pixel that a coordinate falls in, after adding to it.
+#[inline(always)]
+fn pixel<S: Simd>(s: S, x: S::F, add: i32) -> S::I {
+    s.sra::<8>(s.add_i(s.round(x), s.i(add)))
+}
+
+/// Of three corners, `y` where the second comes first, `z` where the third does, else `x`.
+#[inline(always)]
+fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z: Corner<S>) -> Corner<S> {
+    [
+        s.select(second, y[0], s.select(third, z[0], x[0])),
+        s.select(second, y[1], s.select(third, z[1], x[1])),
+        s.select(second, y[2], s.select(third, z[2], x[2])),
+    ]
+}
+
+/// The least depth of tile (x, y); of the first tile for lanes that are not in `m`.
+///
+/// # Safety
+/// Lanes in `m` name tiles of the buffer.
+#[inline(always)]
+unsafe fn least_at<S: Simd>(s: S, buffer: &Buffer, m: S::M, x: S::I, y: S::I) -> S::F {
+    // Exact: there are at most 2^20 tiles.
+    let row = s.round(s.mul(s.to_f(y), s.f(buffer.tiles_w() as f32)));
+    // SAFETY: the caller's contract.
+    unsafe { s.gather(buffer.least(), s.select_i(m, s.add_i(row, x), s.i(0))) }
+}
+
+/// Constant part of an edge's event as the left bound of a row and as the right one, and its slope. `dy` is not negative.
+#[inline(always)]
+fn edge<S: Simd>(s: S, query: bool, [x, y]: [S::D; 2], [dx, dy]: [S::D; 2]) -> [S::D; 3] {
+    // A quarter stands for zero: such an edge is put nowhere by the caller.
+    let inverse = s.div_d(s.d(1.0), s.max_d(dy, s.d(0.25)));
+    let slope = s.mul_d(dx, inverse);
+    // From the corner to row 0's centre, in rows; from pixel 0's centre (its left side for a query) to the corner.
+    let rows = s.mul_d(s.sub_d(s.d(128.0), y), s.d(1.0 / 256.0));
+    let columns = s.mul_d(s.sub_d(x, s.d(if query { 0.0 } else { 128.0 })), s.d(1.0 / 256.0));
+    let at = s.add_d(columns, s.mul_d(slope, rows));
+    if query {
+        // The row's upper and lower end instead of its centre, and what snapping may have moved.
+        let steep = s.max_d(slope, s.sub_d(s.d(0.0), slope));
+        let slack = s.add_d(s.mul_d(steep, s.d(0.5 + 1.0 / 128.0)), s.d(1.0 / 128.0));
+        [s.sub_d(at, slack), s.add_d(at, s.add_d(slack, s.d(1.0))), slope]
+    } else {
+        let at = s.add_d(at, s.sub_d(s.d(1.0), s.mul_d(inverse, s.d(1.0 / 512.0))));
+        [at, at, slope]
+    }
+}
+
+/// Nowhere for lanes in `is`, to be added to an edge's constant part.
+#[inline(always)]
+fn nowhere<S: Simd>(s: S, is: S::M, x: f32) -> S::D {
+    s.to_d(s.select(is, s.f(x), s.f(0.0)))
 }
