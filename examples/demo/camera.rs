@@ -52,8 +52,7 @@ impl Camera {
         let direction = (self.look - self.eye).normalize();
         // Looking straight up or down, any other direction may be up.
         let up = if direction.cross(self.up).length() < 1e-3 { self.sideways() } else { self.up };
-        perspective_infinite_reverse(self.fov, self.aspect, self.near)
-            * look_to_mat4(self.eye, direction, up)
+        perspective_infinite_reverse(self.fov, self.aspect, self.near) * look_to_mat4(self.eye, direction, up)
     }
 
     /// Some direction at a right angle to up.

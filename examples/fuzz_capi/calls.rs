@@ -21,8 +21,7 @@ pub struct Driver<'a> {
 
 impl Driver<'_> {
     /// One random call on each member of one family.
-    pub fn step(&mut self) -> Check {
-        let which = self.rng.usize(..2);
+    pub fn step(&mut self, which: usize) -> Check {
         if self.families[which].size.is_none() && self.rng.u8(..4) != 0 {
             return self.set_resolution(which);
         }
@@ -48,7 +47,7 @@ impl Driver<'_> {
         let mesh = mesh::random(&mut self.rng, self.memory, &self.families[which]);
         let family = &mut self.families[which];
         let (status, answer) = family.all("RenderTriangles", |_, moc| render(moc, &mesh))?;
-        check_prediction("RenderTriangles", &mesh, status)?;
+        check_prediction("RenderTriangles", &mesh, status).map_err(|failure| format!("{failure}\n{mesh}"))?;
         if status == OK {
             ensure([VISIBLE, VIEW_CULLED].contains(&answer), || format!("a draw answers {answer}"))?;
             family.empty &= answer == VIEW_CULLED;
@@ -69,7 +68,7 @@ impl Driver<'_> {
         let family = &self.families[which];
         let (status, answer) = family.all("TestTriangles", |_, moc| test(moc, &mesh))?;
         check_prediction("TestTriangles", &mesh, status)?;
-        check_answer("TestTriangles", family, status, answer)
+        check_answer("TestTriangles", family, status, answer).map_err(|failure| format!("{failure}\n{mesh}"))
     }
 
     fn test_rect(&mut self, which: usize) -> Check {

@@ -48,13 +48,20 @@ impl fmt::Display for Tally {
     }
 }
 
-/// Runs an episode; the same seed and number give the same calls.
-pub fn run(seed: u64, number: u64, memory: &mut Memory, tally: &mut Tally) -> Check {
+/// Runs an episode; the same seed and number give the same calls. A single one is looked at after each call.
+pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mut Tally) -> Check {
     let mut rng = Rng::with_seed(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number));
     let families = [family(&mut rng)?, family(&mut rng)?];
     let mut driver = Driver { rng, memory, families };
     for call in 0..driver.rng.usize(10..80) {
-        driver.step().map_err(|failure| format!("call {call}: {failure}"))?;
+        let which = driver.rng.usize(..2);
+        driver.step(which).map_err(|failure| format!("call {call}: {failure}\n{}", driver.families[which]))?;
+        if single {
+            // Closer to the cause, without a change to the calls that follow.
+            let rng = driver.rng.clone();
+            driver.check_depth(which).map_err(|failure| format!("after call {call}: {failure}"))?;
+            driver.rng = rng;
+        }
         tally.calls += driver.families[0].members.len() as u64;
     }
     for which in 0..2 {

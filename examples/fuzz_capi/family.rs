@@ -24,6 +24,7 @@ pub struct Family {
     pub members: Vec<*mut MaskedOcclusionCulling>,
     pub size: Option<(u32, u32)>,
     pub near: f32,
+    pub update_rule: i32,
     pub y_axis: i32,
     pub own_allocator: bool,
     /// Nothing was drawn since it was cleared.
@@ -32,7 +33,8 @@ pub struct Family {
 
 impl Family {
     pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool) -> Check<Self> {
-        let mut family = Self { members: Vec::new(), size: None, near: 0.0, y_axis, own_allocator, empty: true };
+        let mut family =
+            Self { members: Vec::new(), size: None, near: 0.0, update_rule, y_axis, own_allocator, empty: true };
         let mut seen = Vec::new();
         for implementation in [-1, 0, 1, 2, 3, 16] {
             let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
@@ -77,6 +79,13 @@ impl Family {
             }
         }
         first.ok_or_else(|| "a family without members".into())
+    }
+}
+
+impl std::fmt::Display for Family {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { size, near, update_rule, y_axis, empty, .. } = self;
+        write!(f, "size {size:?}, near {near:e}, rule {update_rule}, y axis {y_axis}, empty {empty}")
     }
 }
 

@@ -52,7 +52,8 @@ fn main() -> std::process::ExitCode {
     let mut tally = episode::Tally::default();
     for number in arguments.episode.unwrap_or(0).. {
         alarm::enter(arguments.seed, number);
-        if let Err(failure) = episode::run(arguments.seed, number, &mut memory, &mut tally) {
+        if let Err(failure) = episode::run(arguments.seed, number, arguments.episode.is_some(), &mut memory, &mut tally)
+        {
             eprintln!("FAILED: {failure}\nrun again with --seed {} --episode {number}", arguments.seed);
             return std::process::ExitCode::FAILURE;
         }

@@ -23,6 +23,23 @@ pub struct Mesh {
     pub checked: bool,
     /// Whether it has to be refused, where that is known.
     pub refused: Option<bool>,
+    /// The corners as they were strewn, where it is known, for a failure's report.
+    pub corners: Vec<[[f32; 3]; 3]>,
+}
+
+impl std::fmt::Display for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { n_triangles, winding, clip_planes, checked, .. } = self;
+        write!(f, "{n_triangles} triangles, winding {winding}, clip planes {clip_planes:#x}, checked {checked}")?;
+        // SAFETY: null or sixteen floats in guarded memory that outlives the call.
+        if let Some(matrix) = unsafe { self.matrix.cast::<[f32; 16]>().as_ref() } {
+            write!(f, "\nmatrix {matrix:?}")?;
+        }
+        for corners in self.corners.iter().take(8) {
+            write!(f, "\n{corners:?}")?;
+        }
+        Ok(())
+    }
 }
 
 /// A mesh for `family`, in guarded memory.
@@ -69,7 +86,12 @@ pub fn random(rng: &mut Rng, memory: &mut Memory, family: &Family) -> Mesh {
         layout: layout_ptr,
         checked,
         refused: None,
+        corners: Vec::new(),
     };
+    if in_range && !any_layout {
+        let corner = |i: u32| positions[i as usize];
+        mesh.corners = used.chunks_exact(3).map(|t| [corner(t[0]), corner(t[1]), corner(t[2])]).collect();
+    }
     match rng.u8(..40) {
         0 => mesh.vertices = null(),
         1 => mesh.triangles = null(),
