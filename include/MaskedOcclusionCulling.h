@@ -151,7 +151,10 @@ public:
         };
     };
 
-    /** A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the buffer's size. */
+    /**
+     * A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the size of the buffer, and lies
+     * at most at the next multiple.
+     */
     struct ScissorRect
     {
         ScissorRect() : mMinX(0), mMinY(0), mMaxX(0), mMaxY(0) {}

@@ -393,7 +393,7 @@ typedef struct MOC_TriList {
 
 /**
  * A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
- * maximum may also be the width or height of the buffer.
+ * maximum may also be the width or height of the buffer, and lies at most at the next multiple.
  */
 typedef struct MOC_ScissorRect {
     /**

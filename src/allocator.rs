@@ -45,7 +45,7 @@ impl Allocator {
             Some((alloc, _)) => unsafe { alloc(layout.align(), layout.size()).cast() },
         };
         let ptr = NonNull::new(ptr).ok_or(Error::OutOfMemory)?;
-        if ptr.as_ptr() as usize % layout.align() != 0 {
+        if !(ptr.as_ptr() as usize).is_multiple_of(layout.align()) {
             // A callback that ignores the alignment gets its memory back; every vector load relies on it.
             // SAFETY: allocated just above with this layout.
             unsafe { self.free(ptr, layout) };

@@ -378,7 +378,7 @@ impl MaskedOcclusionCulling {
 
     fn check_mesh(&self, vertices: &Vertices<'_>, triangles: &[u32]) -> Result<(), Error> {
         self.buffer()?;
-        if triangles.len() % 3 != 0 {
+        if !triangles.len().is_multiple_of(3) {
             return Err(Error::InvalidSize);
         }
         match pipeline::max_index(self.implementation, triangles) {

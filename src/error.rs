@@ -14,7 +14,7 @@ pub enum Error {
     InvalidSize,
     /// A number that has to be finite is not (the near plane).
     InvalidNumber,
-    /// A vertex layout whose stride is negative, or which reaches outside of the vertex slice.
+    /// A vertex layout whose stride or an offset is negative; in the C interface also a misaligned pointer.
     InvalidLayout,
     /// The object has no buffer yet: call `set_resolution` first.
     NoBuffer,
@@ -37,7 +37,7 @@ impl fmt::Display for Error {
             Error::InvalidEnum => "an enumeration has no such value",
             Error::InvalidSize => "a size, count or rectangle is outside of what is accepted",
             Error::InvalidNumber => "a number that has to be finite is not",
-            Error::InvalidLayout => "the vertex layout reaches outside of the vertices",
+            Error::InvalidLayout => "a vertex layout or the alignment of a pointer is not accepted",
             Error::NoBuffer => "no buffer: the resolution was never set",
             Error::IndexOutOfRange => "an index names a vertex that is not there",
             Error::SizeMismatch => "the two buffers differ in resolution or row direction",

@@ -32,7 +32,7 @@ impl Implementation {
         if self == Implementation::Scalar {
             return self;
         }
-        if !all.contains(&self) && (self == Implementation::Neon) == !cfg!(target_arch = "aarch64") {
+        if !all.contains(&self) && (self == Implementation::Neon) != cfg!(target_arch = "aarch64") {
             return *all.last().unwrap_or(&Implementation::Scalar);
         }
         *all.iter().rfind(|i| **i as i32 <= self as i32).unwrap_or(&Implementation::Scalar)

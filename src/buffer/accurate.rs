@@ -12,20 +12,22 @@ impl Rule for Accurate {
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near: z1, near: mask, .. } = *planes;
+        // Pixels of the layer that are nearer already learn nothing.
+        let nearer_is_triangle = s.lt(z1, depth);
+        let c = s.select_i(nearer_is_triangle, c, s.and_not(mask, c));
         let live = live(s, z0, c, depth);
-        let empty = s.eq_i(mask, s.i(0));
+        // Nothing is left of the layer when the triangle covers it.
+        let gone = s.and_m(nearer_is_triangle, s.eq_i(s.and_not(c, mask), s.i(0)));
         let both = s.or(mask, c);
         let farther = s.min(z1, depth);
-        let nearer_is_triangle = s.lt(z1, depth);
         // Together they cover everything: the farther one becomes the reference, the nearer one stays.
         let full = s.and_m(live, s.eq_i(both, s.i(-1)));
         let triangle_to_layer = s.abs(s.sub(depth, z1));
         let layer_to_reference = s.sub(z1, z0);
         let triangle_to_reference = s.sub(depth, z0);
-        let replace = s.or_m(
-            empty,
-            s.and_m(s.lt(layer_to_reference, triangle_to_layer), s.le(layer_to_reference, triangle_to_reference)),
-        );
+        let closest =
+            s.and_m(s.lt(layer_to_reference, triangle_to_layer), s.le(layer_to_reference, triangle_to_reference));
+        let replace = s.or_m(gone, closest);
         let join = s.and_not_m(replace, s.le(triangle_to_layer, triangle_to_reference));
         // Otherwise the triangle is closest to the reference and is lost to it.
         let z = s.select(replace, depth, s.select(join, farther, z1));

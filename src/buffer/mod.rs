@@ -26,7 +26,7 @@ pub(crate) use rule::{Planes, Rule};
 pub(crate) use three_layer::ThreeLayer;
 
 use crate::allocator::AlignedWords;
-use crate::simd::Simd;
+use crate::simd::{MAX_LANES, Simd};
 use crate::{Allocator, Error, ScissorRect, UpdateRule};
 
 pub(crate) const TILE_WIDTH: u32 = 32;
@@ -73,8 +73,8 @@ impl Buffer {
             tiles_h,
             rule,
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
-            // A vector may be loaded from the last of them.
-            least: AlignedWords::new(tiles + SUB_TILES, allocator)?,
+            // The widest vector may be loaded from the last of them.
+            least: AlignedWords::new(tiles + MAX_LANES, allocator)?,
             border: [outside(right, TILE_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
         };
         buffer.clear();
@@ -148,8 +148,8 @@ impl Buffer {
     /// The pixels of tile (x, y) that lie outside of the screen, where there are any.
     #[inline(always)]
     pub fn border(&self, x: u32, y: u32) -> Option<&[u32; SUB_TILES]> {
-        let right = x + 1 == self.tiles_w && self.width % TILE_WIDTH != 0;
-        let bottom = y + 1 == self.tiles_h && self.height % TILE_HEIGHT != 0;
+        let right = x + 1 == self.tiles_w && !self.width.is_multiple_of(TILE_WIDTH);
+        let bottom = y + 1 == self.tiles_h && !self.height.is_multiple_of(TILE_HEIGHT);
         match (right, bottom) {
             (false, false) => None,
             (true, false) => Some(&self.border[0]),

@@ -71,7 +71,7 @@ const TEXTS: [&CStr; 12] = [
     c"an enumeration has no such value",
     c"a size, count or rectangle is outside of what is accepted",
     c"a number that has to be finite is not",
-    c"the vertex layout reaches outside of the vertices",
+    c"a vertex layout or the alignment of a pointer is not accepted",
     c"no buffer: the resolution was never set",
     c"an index names a vertex that is not there",
     c"the two buffers differ in resolution or row direction",

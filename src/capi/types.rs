@@ -132,7 +132,7 @@ pub struct MOC_VertexLayout {
 }
 
 /// A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
-/// maximum may also be the width or height of the buffer.
+/// maximum may also be the width or height of the buffer, and lies at most at the next multiple.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_ScissorRect {

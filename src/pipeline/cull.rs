@@ -8,7 +8,7 @@ use super::project::{Camera, Reader, outcode, project};
 use super::scratch::{
     CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch, pack,
 };
-use super::setup::{Batch, Purpose, set_up};
+use super::setup::{Batch, Purpose, Setup, set_up};
 use super::traverse::LastStep;
 use super::{Facing, Mesh};
 use crate::CullingResult;
@@ -85,6 +85,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let mut in_view = false;
@@ -147,7 +148,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
             // SAFETY: there is room for a vector after the last survivor; survivors name vertices of this chunk.
             let alive = unsafe {
                 let first = scratch.survivors.as_ptr().add(done).cast();
-                set_up(s, L::PURPOSE, buffer, facing, scratch, first, n, &mut batch)
+                set_up(setup, scratch, first, n, &mut batch)
             };
             tally.rasterized += u64::from(alive.rasterized.count_ones());
             if alive.lanes != 0 && !last.take(&batch, alive.lanes, &mut tally) {

@@ -3,7 +3,7 @@
 use super::Facing;
 use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::scratch::{CHUNK_VERTICES, Scratch, pack};
-use super::setup::{Batch, set_up};
+use super::setup::{Batch, Setup, set_up};
 use super::traverse::LastStep;
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::buffer::Buffer;
@@ -20,6 +20,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
     let mut tally = Tally::default();
     let mut position = 0;
     while position < list.len() {
@@ -33,7 +34,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
             // SAFETY: there is room for a vector after the last survivor; survivors name vertices just written.
             let alive = unsafe {
                 let first = scratch.survivors.as_ptr().add(done).cast();
-                set_up(s, L::PURPOSE, buffer, facing, scratch, first, n, &mut batch)
+                set_up(setup, scratch, first, n, &mut batch)
             };
             tally.rasterized += u64::from(alive.rasterized.count_ones());
             if alive.lanes != 0 {

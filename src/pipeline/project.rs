@@ -109,7 +109,7 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
     marks = s.or(marks, s.or(bit_where(s, s.lt(x, minus_w), outcode::LEFT), bit_where(s, s.lt(w, x), outcode::RIGHT)));
     marks = s.or(marks, s.or(bit_where(s, s.lt(y, minus_w), outcode::BELOW), bit_where(s, s.lt(w, y), outcode::ABOVE)));
-    [s.select(regular, column, s.from_bits(marks)), s.select(regular, row, s.f(0.0)), z]
+    [s.select(regular, column, s.float_of_bits(marks)), s.select(regular, row, s.f(0.0)), z]
 }
 
 /// How a call reads its vertices: layout and matrix, ready for vectors.

@@ -14,8 +14,7 @@ pub(super) const CHUNK_VERTICES: usize = VERTICES - CLIPPED_VERTICES;
 pub(super) const CHUNK_TRIANGLES: usize = 512;
 /// Survivors of a chunk and of clipping.
 pub(super) const SURVIVORS: usize = CHUNK_TRIANGLES + 2 * CLIPPED_VERTICES;
-/// No vector has more lanes.
-pub(super) const MAX_LANES: usize = 16;
+pub(super) use crate::simd::MAX_LANES;
 
 #[repr(C, align(64))]
 pub(super) struct Scratch {

@@ -116,6 +116,15 @@ pub(super) struct Alive {
     pub rasterized: u32,
 }
 
+/// How a call's triangles are set up.
+#[derive(Clone, Copy)]
+pub(super) struct Setup<'a, S> {
+    pub s: S,
+    pub purpose: Purpose,
+    pub buffer: &'a Buffer,
+    pub facing: Facing,
+}
+
 /// Sets up the first `n` of the survivors at `survivors`.
 ///
 /// # Safety
@@ -123,15 +132,13 @@ pub(super) struct Alive {
 /// first `n` are regular ones that were written.
 #[inline(always)]
 pub(super) unsafe fn set_up<S: Simd>(
-    s: S,
-    purpose: Purpose,
-    buffer: &Buffer,
-    facing: Facing,
+    setup: Setup<'_, S>,
     scratch: &Scratch,
     survivors: *const u32,
     n: usize,
     batch: &mut Batch,
 ) -> Alive {
+    let Setup { s, purpose, buffer, facing } = setup;
     let query = purpose == Purpose::Query;
     // SAFETY: the caller's contract.
     let packed = unsafe { s.load_i(survivors) };

@@ -219,7 +219,7 @@ impl Simd for Avx2 {
         unsafe { _mm256_castps_si256(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> __m256 {
+    fn float_of_bits(self, a: Self::I) -> __m256 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castsi256_ps(a) }
     }

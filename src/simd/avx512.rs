@@ -186,7 +186,7 @@ impl Simd for Avx512Tile {
         unsafe { _mm256_castps_si256(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> __m256 {
+    fn float_of_bits(self, a: Self::I) -> __m256 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castsi256_ps(a) }
     }
@@ -532,7 +532,7 @@ impl Simd for Avx512Wide {
         unsafe { _mm512_castps_si512(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> __m512 {
+    fn float_of_bits(self, a: Self::I) -> __m512 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_castsi512_ps(a) }
     }

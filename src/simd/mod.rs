@@ -20,8 +20,13 @@ mod pair;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod sse;
+#[cfg(test)]
+mod tests;
 
 use crate::Implementation;
+
+/// No vector has more lanes.
+pub(crate) const MAX_LANES: usize = 16;
 
 /// Vectors of `LANES` 32-bit floats (`F`) or integers (`I`), masks (`M`) and 64-bit floats (`D`).
 ///
@@ -85,7 +90,7 @@ pub(crate) trait Simd: Copy {
     fn round(self, a: Self::F) -> Self::I;
     fn to_f(self, a: Self::I) -> Self::F;
     fn bits(self, a: Self::F) -> Self::I;
-    fn from_bits(self, a: Self::I) -> Self::F;
+    fn float_of_bits(self, a: Self::I) -> Self::F;
     /// The least lane.
     fn least(self, a: Self::F) -> f32;
 

@@ -199,7 +199,7 @@ impl Simd for Neon {
         unsafe { vreinterpretq_s32_f32(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> float32x4_t {
+    fn float_of_bits(self, a: Self::I) -> float32x4_t {
         // SAFETY: the token proves the instruction set.
         unsafe { vreinterpretq_f32_s32(a) }
     }

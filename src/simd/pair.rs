@@ -113,7 +113,7 @@ impl<S: Simd> Simd for Pair<S> {
         round(a: F) -> I;
         to_f(a: I) -> F;
         bits(a: F) -> I;
-        from_bits(a: I) -> F;
+        float_of_bits(a: I) -> F;
         add_i(a: I, b: I) -> I;
         sub_i(a: I, b: I) -> I;
         and(a: I, b: I) -> I;

@@ -202,7 +202,7 @@ impl Simd for Scalar4 {
         lanes!(a => a.to_bits() as i32)
     }
     #[inline(always)]
-    fn from_bits(self, a: [i32; 4]) -> [f32; 4] {
+    fn float_of_bits(self, a: [i32; 4]) -> [f32; 4] {
         lanes!(a => f32::from_bits(a as u32))
     }
     #[inline(always)]

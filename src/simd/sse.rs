@@ -223,7 +223,7 @@ impl Simd for Sse2 {
         unsafe { _mm_castps_si128(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> __m128 {
+    fn float_of_bits(self, a: Self::I) -> __m128 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm_castsi128_ps(a) }
     }
@@ -564,7 +564,7 @@ impl Simd for Sse41 {
         unsafe { _mm_castps_si128(a) }
     }
     #[inline(always)]
-    fn from_bits(self, a: Self::I) -> __m128 {
+    fn float_of_bits(self, a: Self::I) -> __m128 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm_castsi128_ps(a) }
     }

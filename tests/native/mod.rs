@@ -1,119 +1,46 @@
-//! Compiles C and C++ programs against include/ and the library that cargo built for the program that asks.
+//! The libraries of this package as C and C++ programs see them: where cargo put them, and how to link them.
+#![allow(dead_code)]
+
+mod program;
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-/// How a program gets the library.
-#[allow(dead_code)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Link {
-    Static,
-    Shared,
-}
+#[allow(unused_imports)]
+pub use program::{Link, Program, build, run};
 
-/// A program to be compiled.
-pub struct Program<'a> {
-    /// `.c` or `.cpp`.
-    pub source: &'a Path,
-    /// The folder that the program and what comes up on the way are written to. It must exist.
-    pub out: &'a Path,
-    pub link: Link,
-    /// Macros.
-    pub defines: &'a [(&'a str, &'a str)],
-    /// Further arguments of the compiler.
-    pub flags: &'a [&'a str],
-}
-
-/// The root of the repository.
+/// The folder of this package.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Compiles and links; returns the program's path, or what the compiler said.
-pub fn build(program: &Program) -> Result<PathBuf, String> {
-    let cpp = program.source.extension().is_some_and(|e| e == "cpp");
-    let target = target();
-    let mut build = cc::Build::new();
-    build.cpp(cpp).target(&target).host(&target).opt_level(2).debug(false).cargo_metadata(false).out_dir(program.out);
-    build.warnings(true).extra_warnings(true).warnings_into_errors(true).static_crt(false);
-    build.std(if cpp { if msvc() { "c++14" } else { "c++11" } } else { "c11" });
-    let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
-
-    let exe =
-        program.out.join(program.source.file_stem().unwrap_or_default()).with_extension(env::consts::EXE_EXTENSION);
-    let mut command = compiler.to_command();
-    command.current_dir(program.out);
-    for (name, value) in program.defines {
-        command.arg(format!("-D{name}={value}"));
-    }
-    command.args(program.flags).arg("-I").arg(root().join("include")).arg(program.source);
-    let library = library(program.link)?;
-    if compiler.is_like_msvc() {
-        let mut out = std::ffi::OsString::from("/Fe:");
-        out.push(&exe);
-        command.arg("/EHsc").arg(out).arg(library);
-        command.args(["kernel32.lib", "ntdll.lib", "userenv.lib", "ws2_32.lib", "dbghelp.lib"]);
-    } else {
-        command.arg("-pthread").arg("-o").arg(&exe).arg(&library);
-        if program.link == Link::Shared {
-            let folder = library.parent().unwrap_or(Path::new("."));
-            command.arg(format!("-Wl,-rpath,{}", folder.display()));
-        } else if cfg!(target_os = "linux") {
-            command.args(["-ldl", "-lm"]);
-        } else if cfg!(target_os = "windows") {
-            command.args(["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp"]);
-        } else {
-            command.arg("-lm");
-        }
-    }
-    run(&mut command).map(|_| exe)
+/// The shared library that C programs link.
+pub fn shared_library() -> PathBuf {
+    library(Link::Shared).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Runs a command to its end; returns what it printed, or why it failed.
-pub fn run(command: &mut Command) -> Result<String, String> {
-    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    if output.status.success() {
-        return Ok(text(&output.stdout));
-    }
-    Err(format!("{command:?}\n{}{}{}", text(&output.stdout), text(&output.stderr), output.status))
+/// The static library that C programs link.
+pub fn static_library() -> PathBuf {
+    library(Link::Static).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The library in the form that is asked for. Cargo puts it beside a test, and into `../deps` of an example.
+/// cargo builds every kind of library that Cargo.toml names before a test or an example, and leaves those for C
+/// beside the executable of a test, and in `../deps` of an example.
 fn library(link: Link) -> Result<PathBuf, String> {
-    let name = match (link, msvc()) {
+    let name = match (link, cfg!(all(windows, target_env = "msvc"))) {
         (Link::Static, true) => "masked_occlusion_culling.lib".into(),
         (Link::Static, false) => "libmasked_occlusion_culling.a".into(),
+        // What is linked is not the library itself, but the list of its functions.
         (Link::Shared, true) => "masked_occlusion_culling.dll.lib".into(),
         (Link::Shared, false) => {
             format!("{}masked_occlusion_culling{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX)
         }
     };
-    let exe = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
-    let folder = exe.parent().unwrap_or(Path::new("."));
+    let executable = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
+    let folder = executable.parent().unwrap_or(Path::new("."));
     let places = [folder.join(&name), folder.join("../deps").join(&name), folder.join("..").join(&name)];
-    places.iter().find(|p| p.exists()).cloned().ok_or_else(|| format!("{name} is not in {}", folder.display()))
-}
-
-fn msvc() -> bool {
-    cfg!(all(windows, target_env = "msvc"))
-}
-
-/// The platform that this program was compiled for, by the name that compilers know.
-fn target() -> String {
-    let arch = env::consts::ARCH;
-    let abi = if cfg!(target_env = "msvc") {
-        "msvc"
-    } else if cfg!(target_env = "musl") {
-        "musl"
-    } else {
-        "gnu"
-    };
-    match env::consts::OS {
-        "macos" => format!("{arch}-apple-darwin"),
-        "windows" => format!("{arch}-pc-windows-{abi}"),
-        "linux" => format!("{arch}-unknown-linux-{abi}"),
-        os => format!("{arch}-unknown-{os}"),
-    }
+    places
+        .into_iter()
+        .find(|path| path.is_file())
+        .ok_or_else(|| format!("{name} is not beside {}: was the library built for this target?", executable.display()))
 }

@@ -1,0 +1,15 @@
+// What each translation unit of the `switches` program reports of the object that its switches made.
+#pragma once
+
+#include <stdint.h>
+
+struct Report
+{
+    int32_t update_rule;
+    int32_t implementation;
+    bool first_row_is_top;
+};
+
+Report ReportDefault();
+Report ReportQuick();
+Report ReportAccurate();

@@ -1,0 +1,161 @@
+//! Every operation on every instruction set against the scalar one, bit by bit.
+
+use super::{Job, Simd, available, run};
+use crate::Implementation;
+
+/// Sixteen lanes of input, as many as the widest vector has.
+const N: usize = 16;
+
+#[derive(Clone, Copy)]
+struct Input {
+    a: [f32; N],
+    b: [f32; N],
+    i: [u32; N],
+    j: [u32; N],
+    /// From 0 to 32.
+    count: [u32; N],
+    /// Below N.
+    index: [u32; N],
+}
+
+struct AllOperations(Input);
+
+impl Job for AllOperations {
+    type Output = [Vec<u32>; 2];
+
+    #[inline(always)]
+    fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output {
+        [operations(tile, &self.0), operations(wide, &self.0)]
+    }
+}
+
+/// The results of all operations, lane after lane, operation after operation; vectors of any width give the same.
+#[inline(always)]
+fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
+    let mut out: Vec<Vec<u32>> = Vec::new();
+    let mut kept = Vec::new();
+    for first in (0..N).step_by(S::LANES) {
+        let mut results: Vec<Vec<u32>> = Vec::new();
+        // SAFETY: every array has N elements, and `first + LANES <= N`.
+        let (a, b, i, j, count, index) = unsafe {
+            (
+                s.load_f(input.a.as_ptr().add(first)),
+                s.load_f(input.b.as_ptr().add(first)),
+                s.load_i(input.i.as_ptr().add(first)),
+                s.load_i(input.j.as_ptr().add(first)),
+                s.load_i(input.count.as_ptr().add(first)),
+                s.load_i(input.index.as_ptr().add(first)),
+            )
+        };
+        let lanes = |x: S::I| {
+            let mut lanes = [0; N];
+            // SAFETY: N words hold a vector.
+            unsafe { s.store_i(lanes.as_mut_ptr(), x) };
+            lanes[..S::LANES].to_vec()
+        };
+        let floats = |x: S::F| lanes(s.bits(x));
+        let masks = |m: S::M| lanes(s.select_i(m, s.i(-1), s.i(0)));
+        let doubles = |d: S::D| {
+            let mut lanes = [0.0_f64; N];
+            // SAFETY: N doubles hold a vector.
+            unsafe { s.store_d(lanes.as_mut_ptr(), d) };
+            lanes[..S::LANES].iter().map(|x| (x.to_bits() ^ (x.to_bits() >> 32)) as u32).collect::<Vec<_>>()
+        };
+        let (da, db) = (s.to_d(a), s.to_d(b));
+        let m = s.lt(a, b);
+        let k = s.gt_i(i, j);
+        results.extend(
+            [s.add(a, b), s.sub(a, b), s.mul(a, b), s.div(a, b), s.min(a, b), s.max(a, b), s.abs(a)].map(floats),
+        );
+        results.extend(
+            [m, s.le(a, b), s.eq(a, b), k, s.eq_i(i, j), s.and_m(m, k), s.or_m(m, k), s.and_not_m(m, k)].map(masks),
+        );
+        results.extend([s.select(m, a, b), s.to_f(i), s.float_of_bits(i)].map(floats));
+        results.extend(
+            [s.add_i(i, j), s.sub_i(i, j), s.and(i, j), s.or(i, j), s.and_not(i, j), s.min_i(i, j), s.max_i(i, j)]
+                .map(lanes),
+        );
+        results
+            .extend([s.max_u(i, j), s.shl::<13>(i), s.sra::<5>(i), s.ones_shl(count), s.select_i(k, i, j)].map(lanes));
+        results.extend([s.transpose_bytes(i), s.round(s.mul(s.to_f(s.sra::<8>(i)), s.f(0.125)))].map(lanes));
+        let sums =
+            [s.add_d(da, db), s.sub_d(da, db), s.mul_d(da, db), s.div_d(da, db), s.min_d(da, db), s.max_d(da, db)];
+        results.extend(sums.map(doubles));
+        results.push(floats(s.d_to_f(s.add_d(da, db))));
+        results.push(lanes(s.d_to_i(s.to_d(s.mul(s.to_f(s.sra::<4>(i)), s.f(0.37))))));
+        results.push(masks(s.first(S::LANES)));
+        // SAFETY: indices are below N; an f32 every 8 bytes from the middle of a 4 N long array stays inside.
+        unsafe {
+            results.push(floats(s.gather(input.a.as_ptr(), index)));
+            let far: Vec<f32> = (0..4 * N).map(|x| x as f32).collect();
+            results.push(floats(s.load_strided(far.as_ptr().cast::<u8>().add(8 * first), 8)));
+            let triangles: Vec<u32> = (0..3 * N as u32).collect();
+            results.extend(s.load_triangles(triangles.as_ptr().add(3 * first)).map(lanes));
+            let mut packed = [0; N];
+            let n = s.compress(packed.as_mut_ptr(), m, i);
+            kept.extend_from_slice(&packed[..n]);
+        }
+        let bits = s.mask_bits(m);
+        results.push((0..S::LANES).map(|lane| bits >> lane & 1).collect());
+        if out.is_empty() {
+            out.resize(results.len(), Vec::new());
+        }
+        for (all, part) in out.iter_mut().zip(results) {
+            all.extend(part);
+        }
+    }
+    let numbers = input.a.map(|x| if x.is_nan() { 0.0 } else { x });
+    // SAFETY: N floats hold a vector.
+    let least = (0..N).step_by(S::LANES).map(|first| s.least(unsafe { s.load_f(numbers.as_ptr().add(first)) }));
+    out.push(vec![least.fold(f32::INFINITY, f32::min).to_bits()]);
+    out.push(kept);
+    out.concat()
+}
+
+/// xorshift64*: a fixed stream of bits.
+struct Bits(u64);
+
+impl Bits {
+    fn next(&mut self) -> u32 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) as u32
+    }
+
+    fn float(&mut self, special: bool) -> f32 {
+        const SPECIAL: [f32; 8] =
+            [0.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1.0, f32::MAX, f32::MIN_POSITIVE];
+        match self.next() % 4 {
+            0 if special => SPECIAL[self.next() as usize % SPECIAL.len()],
+            // Of middling size, so that no result is a denormal number or overflows.
+            _ => f32::from_bits((self.next() & 0x807f_ffff) | (96 + self.next() % 60) << 23),
+        }
+    }
+}
+
+#[test]
+fn every_instruction_set_agrees_with_scalar() {
+    let mut bits = Bits(0x9e37_79b9_7f4a_7c15);
+    for round in 0..500 {
+        let special = round % 2 == 1;
+        let input = Input {
+            a: core::array::from_fn(|_| bits.float(special)),
+            b: core::array::from_fn(|_| bits.float(special)),
+            i: core::array::from_fn(|_| bits.next()),
+            j: core::array::from_fn(|_| bits.next() >> (bits.next() % 32)),
+            count: core::array::from_fn(|_| bits.next() % 33),
+            index: core::array::from_fn(|_| bits.next() % N as u32),
+        };
+        let [expected, expected_wide] = run(Implementation::Scalar, AllOperations(input));
+        assert_eq!(expected, expected_wide);
+        for &implementation in available() {
+            for (kind, got) in ["tile", "wide"].into_iter().zip(run(implementation, AllOperations(input))) {
+                // The bits of a NaN may differ; that it is one may not.
+                let canonical = |x: &u32| if f32::from_bits(*x).is_nan() { 0x7fc0_0000 } else { *x };
+                let same = expected.iter().map(canonical).eq(got.iter().map(canonical));
+                assert!(same, "{implementation:?} {kind}, round {round}:\n{expected:x?}\n{got:x?}");
+            }
+        }
+    }
+}

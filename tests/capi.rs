@@ -1,0 +1,204 @@
+//! Compiles the programs of `capi-tests` with the machine's C and C++ compilers, as a user of the library
+//! would, and runs them against the shared and the static library.
+#![cfg(unix)]
+
+mod native;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-pedantic", "-Werror"];
+const SANITIZERS: &str = "-fsanitize=address,undefined";
+
+#[derive(Clone, Copy, Debug)]
+enum Library {
+    Shared,
+    Static,
+}
+
+struct Program {
+    name: &'static str,
+    sources: &'static [&'static str],
+    cpp: bool,
+}
+
+const ALL_FUNCTIONS: Program = Program { name: "all_functions", sources: &["all_functions.c"], cpp: false };
+const HOSTILE: Program = Program { name: "hostile", sources: &["hostile.c"], cpp: false };
+const EXACT_ARRAYS: Program = Program { name: "exact_arrays", sources: &["exact_arrays.c"], cpp: false };
+const PEER_STYLE: Program = Program { name: "peer_style", sources: &["peer_style.cpp"], cpp: true };
+const SWITCHES: Program = Program {
+    name: "switches",
+    sources: &["switches_main.cpp", "switches_quick.cpp", "switches_accurate.cpp"],
+    cpp: true,
+};
+const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
+
+/// The compiler that the `cc` crate finds for the target that the library was built for.
+fn compiler(cpp: bool, folder: &Path) -> Command {
+    cc::Build::new()
+        .cpp(cpp)
+        .target(env!("MOC_TARGET"))
+        .host(env!("MOC_HOST"))
+        .opt_level(0)
+        .debug(true)
+        .cargo_metadata(false)
+        .out_dir(folder)
+        .get_compiler()
+        .to_command()
+}
+
+fn succeed(what: &str, output: &Output) {
+    assert!(
+        output.status.success(),
+        "{what}: {}\n{}{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+/// Compiles and links; `None` where a compiler with `flags` cannot even link an empty program.
+fn build(program: &Program, library: Library, flags: &[&str], folder: &Path) -> Option<PathBuf> {
+    if !flags.is_empty() && !links_an_empty_program(flags, folder) {
+        return None;
+    }
+    let executable = folder.join(program.name);
+    let mut command = compiler(program.cpp, folder);
+    command.arg(if program.cpp { "-std=c++11" } else { "-std=c99" }).args(STRICT).args(flags);
+    command.arg("-I").arg(native::root().join("include"));
+    command.args(program.sources.iter().map(|source| native::root().join("capi-tests").join(source)));
+    command.arg("-o").arg(&executable);
+    match library {
+        Library::Shared => {
+            let path = native::shared_library();
+            let folder = path.parent().expect("a library lies in a folder").display().to_string();
+            command.arg(&path).arg(format!("-Wl,-rpath,{folder}"));
+        }
+        Library::Static => {
+            command.arg(native::static_library());
+        }
+    }
+    // What Rust's standard library needs of the system (`rustc --print native-static-libs`).
+    command.args(["-lpthread", "-lm"]);
+    if cfg!(target_os = "linux") {
+        command.args(["-lgcc_s", "-ldl", "-lrt", "-lutil"]);
+    }
+    succeed(&format!("compiling {}", program.name), &command.output().expect("a C compiler"));
+    Some(executable)
+}
+
+fn links_an_empty_program(flags: &[&str], folder: &Path) -> bool {
+    let source = folder.join("empty.c");
+    std::fs::write(&source, "int main(void) { return 0; }\n").expect("a temporary file");
+    let mut command = compiler(false, folder);
+    command.args(flags).arg(&source).arg("-o").arg(folder.join("empty"));
+    command.output().expect("a C compiler").status.success()
+}
+
+fn run(program: &Program, library: Library) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let executable = build(program, library, &[], folder.path()).expect("no flags to refuse");
+    let output = Command::new(executable).output().expect("the program starts");
+    succeed(&format!("{} with the {library:?} library", program.name), &output);
+}
+
+macro_rules! programs {
+    ($($name:ident: $program:expr, $library:expr;)*) => {$(
+        #[test]
+        fn $name() {
+            run(&$program, $library);
+        }
+    )*};
+}
+
+programs! {
+    all_functions_shared: ALL_FUNCTIONS, Library::Shared;
+    all_functions_static: ALL_FUNCTIONS, Library::Static;
+    exact_arrays_shared: EXACT_ARRAYS, Library::Shared;
+    exact_arrays_static: EXACT_ARRAYS, Library::Static;
+    hostile_shared: HOSTILE, Library::Shared;
+    hostile_static: HOSTILE, Library::Static;
+    peer_style_shared: PEER_STYLE, Library::Shared;
+    peer_style_static: PEER_STYLE, Library::Static;
+    switches_shared: SWITCHES, Library::Shared;
+    switches_static: SWITCHES, Library::Static;
+    threads_shared: THREADS, Library::Shared;
+    threads_static: THREADS, Library::Static;
+}
+
+#[test]
+fn exact_arrays_under_sanitizers() {
+    under_sanitizers(&EXACT_ARRAYS);
+}
+
+#[test]
+fn hostile_under_sanitizers() {
+    under_sanitizers(&HOSTILE);
+}
+
+#[test]
+fn peer_style_under_sanitizers() {
+    under_sanitizers(&PEER_STYLE);
+}
+
+fn under_sanitizers(program: &Program) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let flags = [SANITIZERS, "-fno-sanitize-recover=all"];
+    let Some(executable) = build(program, Library::Static, &flags, folder.path()) else {
+        println!("skipped: this compiler cannot link {SANITIZERS}");
+        return;
+    };
+    let output = Command::new(executable)
+        .env("ASAN_OPTIONS", "detect_leaks=1:allocator_may_return_null=1")
+        .output()
+        .expect("the program starts");
+    succeed(&format!("{} under {SANITIZERS}", program.name), &output);
+}
+
+/// Both headers, alone, with every compiler that is here and each standard from the oldest on.
+#[test]
+fn headers_compile_without_warnings() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut compiled = 0;
+    for (compilers, suffix, standards, headers) in [
+        (["gcc", "clang"], "c", &["c99", "c11", "c17"][..], &["masked_occlusion_culling.h"][..]),
+        (
+            ["g++", "clang++"],
+            "cpp",
+            &["c++11", "c++14", "c++17", "c++20"][..],
+            &["masked_occlusion_culling.h", "MaskedOcclusionCulling.h"][..],
+        ),
+    ] {
+        for header in headers {
+            let source = folder.path().join(header).with_extension(suffix);
+            std::fs::write(&source, format!("#include \"{header}\"\n#include \"{header}\"\n")).expect("a file");
+            for compiler in compilers {
+                if Command::new(compiler).arg("--version").output().is_err() {
+                    println!("skipped: no {compiler} here");
+                    continue;
+                }
+                for standard in standards {
+                    let mut command = Command::new(compiler);
+                    command.arg(format!("-std={standard}")).args(STRICT).args(["-Wshadow", "-Wconversion", "-Wundef"]);
+                    command.arg("-fsyntax-only").arg("-I").arg(native::root().join("include")).arg(&source);
+                    succeed(&format!("{command:?}"), &command.output().expect("a compiler"));
+                    compiled += 1;
+                }
+            }
+        }
+    }
+    assert!(compiled > 0, "no compiler was found");
+}
+
+/// The recorder's switch is refused in words instead of a missing method.
+#[test]
+fn the_recorder_is_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let source = folder.path().join("recorder.cpp");
+    std::fs::write(&source, "#define MOC_RECORDER_ENABLE 1\n#include \"MaskedOcclusionCulling.h\"\n").expect("a file");
+    let mut command = compiler(true, folder.path());
+    command.arg("-fsyntax-only").arg("-I").arg(native::root().join("include")).arg(&source);
+    let output = command.output().expect("a C++ compiler");
+    assert!(!output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("recorder is not in this version"));
+}

@@ -1,0 +1,77 @@
+//! Compiles C and C++ programs against include/ and the library, for whoever asks, and runs them.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::{library, root};
+
+/// How a program gets the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Link {
+    Static,
+    Shared,
+}
+
+/// A program to be compiled.
+pub struct Program<'a> {
+    /// `.c` or `.cpp`.
+    pub source: &'a Path,
+    /// The folder that the program and what comes up on the way are written to. It must exist.
+    pub out: &'a Path,
+    pub link: Link,
+    /// Macros.
+    pub defines: &'a [(&'a str, &'a str)],
+    /// Further arguments of the compiler.
+    pub flags: &'a [&'a str],
+}
+
+/// Compiles and links; returns the program's path, or what the compiler said.
+pub fn build(program: &Program) -> Result<PathBuf, String> {
+    let cpp = program.source.extension().is_some_and(|e| e == "cpp");
+    let target = env!("MOC_TARGET");
+    let mut build = cc::Build::new();
+    build.cpp(cpp).target(target).host(target).opt_level(2).debug(false).cargo_metadata(false).out_dir(program.out);
+    build.warnings(true).extra_warnings(true).static_crt(false);
+    build.std(if cpp { if cfg!(target_env = "msvc") { "c++14" } else { "c++11" } } else { "c11" });
+    let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
+
+    let exe =
+        program.out.join(program.source.file_stem().unwrap_or_default()).with_extension(env::consts::EXE_EXTENSION);
+    let mut command = compiler.to_command();
+    command.current_dir(program.out);
+    for (name, value) in program.defines {
+        command.arg(format!("-D{name}={value}"));
+    }
+    command.args(program.flags).arg("-I").arg(root().join("include")).arg(program.source);
+    let library = library(program.link)?;
+    if compiler.is_like_msvc() {
+        let mut out = std::ffi::OsString::from("/Fe:");
+        out.push(&exe);
+        command.arg("/EHsc").arg(out).arg(library);
+        command.args(["kernel32.lib", "ntdll.lib", "userenv.lib", "ws2_32.lib", "dbghelp.lib"]);
+    } else {
+        command.arg("-pthread").arg("-o").arg(&exe).arg(&library);
+        if program.link == Link::Shared {
+            let folder = library.parent().unwrap_or(Path::new("."));
+            command.arg(format!("-Wl,-rpath,{}", folder.display()));
+        } else if cfg!(target_os = "linux") {
+            command.args(["-lgcc_s", "-lutil", "-lrt", "-ldl", "-lm"]);
+        } else if cfg!(target_os = "windows") {
+            command.args(["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp"]);
+        } else {
+            command.arg("-lm");
+        }
+    }
+    run(&mut command).map(|_| exe)
+}
+
+/// Runs a command to its end; returns what it printed, or why it failed.
+pub fn run(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if output.status.success() {
+        return Ok(text(&output.stdout));
+    }
+    Err(format!("{command:?}\n{}{}{}", text(&output.stdout), text(&output.stderr), output.status))
+}
