@@ -60,7 +60,7 @@ impl Camera {
         self.up.any_orthonormal_vector()
     }
 
-    /// Tries places inside of the scene and in front of it, and takes the one that sees most objects.
+    /// Tries places inside of the scene and in front of it, and takes the best.
     fn choose(&mut self, scene: &Scene, look: Option<Vec3>) {
         let (lo, hi) = scene.bounds();
         let size = hi - lo;
@@ -71,14 +71,12 @@ impl Camera {
             (lo + hi) / 2.0 + local * size
         };
         let mut places = Vec::new();
-        for x in [0.06, 0.2, 0.35, 0.5, 0.65, 0.8, 0.94] {
-            for z in [0.06, 0.2, 0.35, 0.5, 0.65, 0.8, 0.94] {
-                for y in [0.12, 0.3] {
-                    places.extend((0..8).map(|turn| {
-                        let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 8.0).sin_cos();
-                        (at(x, y, z), at(x, y, z) + (right * cos + ahead * sin) * size.length())
-                    }));
-                }
+        for x in [0.1, 0.3, 0.5, 0.7, 0.9] {
+            for z in [0.1, 0.3, 0.5, 0.7, 0.9] {
+                places.extend((0..8).map(|turn| {
+                    let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 8.0).sin_cos();
+                    (at(x, 0.2, z), at(x, 0.2, z) + (right * cos + ahead * sin) * size.length())
+                }));
             }
         }
         for (x, z) in [(-0.6, -0.6), (1.6, -0.6), (1.6, 1.6), (-0.6, 1.6)] {
@@ -97,13 +95,15 @@ impl Camera {
         (self.eye, self.look) = chosen;
     }
 
-    /// How much there is to see: many objects, none of them in the way, no backs of triangles.
+    /// How much there is to see and to cull: many objects in front and many behind, few of them in the way, and
+    /// few backs of triangles.
     fn score(&self, scene: &Scene) -> f32 {
         let clip = self.clip_from_world();
         let mut buffer = ZBuffer::new(96, 54);
-        // Where nothing but boxes in view could be drawn, the box is in view; the rest is not worth drawing.
+        let mut in_sight = 0.0;
         for (id, object) in scene.objects.iter().enumerate().filter(|(_, o)| in_view(o.lo, o.hi, &clip)) {
             buffer.draw(object, id as u32, &clip, self.near);
+            in_sight += 1.0;
         }
         let size = (scene.bounds().1 - scene.bounds().0).length();
         let (mut seen, mut covered, mut close) = (vec![false; scene.objects.len()], 0.0, 0.0);
@@ -119,7 +119,8 @@ impl Camera {
         }
         let pixels = buffer.owner.len() as f32;
         let open = 1.0 - close / pixels;
-        seen.iter().filter(|s| **s).count() as f32 * (covered / pixels).min(0.85) * open * open
+        let seen = seen.iter().filter(|s| **s).count() as f32;
+        (seen * (in_sight - seen + 1.0)).sqrt() * (covered / pixels).min(0.85) * open * open
     }
 }
 

@@ -105,7 +105,7 @@ fn view(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) -> Ima
     draw(&mut buffer, scene, &clip, camera.near, |i| outcome.fates[i] != Fate::Culled);
     let sky = |y: f32| Vec3::new(0.40, 0.60, 0.84).lerp(Vec3::new(0.83, 0.89, 0.94), (y * 1.7).min(1.0));
     let (lo, hi) = scene.bounds();
-    light.picture(scene, &buffer, &clip, |_, colour| colour, sky, Some((camera.eye, (hi - lo).length() * 0.9)))
+    light.picture(scene, &buffer, &clip, |_, colour| colour, sky, Some((camera.eye, (hi - lo).length() * 2.5)))
 }
 
 /// The view in grey, with what was culled shining through.

@@ -1,0 +1,105 @@
+//! The programs of cpp-examples compile without a warning, run, and say what they should, with the library linked in
+//! either way.
+
+mod native;
+
+use std::path::Path;
+use std::process::Command;
+
+use native::{Link, Program};
+
+/// What a program prints, linked statically and dynamically.
+fn outputs(source: &str) -> [String; 2] {
+    [Link::Static, Link::Shared].map(|link| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let program = compile(source, link, &[], folder.path());
+        native::run(&mut Command::new(program)).unwrap_or_else(|e| panic!("{source}, {link:?}: {e}"))
+    })
+}
+
+fn compile(source: &str, link: Link, defines: &[(&str, &str)], out: &Path) -> std::path::PathBuf {
+    let source = native::root().join("cpp-examples").join(source);
+    let flags = [if cfg!(target_env = "msvc") { "/WX" } else { "-Werror" }];
+    native::build(&Program { source: &source, out, link, defines, flags: &flags }).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn first_triangle() {
+    for output in outputs("first_triangle.cpp") {
+        let answers: Vec<&str> = output.lines().filter_map(|l| l.rsplit_once(": ")).map(|(_, a)| a.trim()).collect();
+        assert_eq!(answers, ["occluded", "visible", "visible", "outside of the view", "occluded"], "{output}");
+    }
+}
+
+#[test]
+fn switching_over() {
+    for output in outputs("switching_over.cpp") {
+        assert!(output.contains("depth at the centre: 0.1000"), "{output}");
+        assert!(output.contains("allocations left: 0"), "{output}");
+    }
+}
+
+#[test]
+fn bins_and_threads() {
+    for output in outputs("bins_and_threads.cpp") {
+        assert!(output.contains("one thread and four agree: yes"), "{output}");
+        assert!(!output.contains(" 0.0% of the screen"), "{output}");
+    }
+}
+
+#[test]
+fn plain_c() {
+    for output in outputs("plain_c.c") {
+        assert!(output.contains("behind the square: occluded"), "{output}");
+        assert!(output.contains("an index too high: "), "{output}");
+    }
+}
+
+/// The demo's program on a scene of three boxes that are faces only: one hides another, the third stands beside.
+#[test]
+fn demo_culls_what_is_behind() {
+    let mut bytes = b"MOCDEMO1".to_vec();
+    let mut words = |words: &[u32]| words.iter().for_each(|w| bytes.extend(w.to_le_bytes()));
+    let mut floats = |list: &[f32]| words(&list.iter().map(|f| f.to_bits()).collect::<Vec<_>>());
+    // Half width, centre x and distance; the camera looks along +z, so w is z.
+    let squares = [(2.0f32, 0.0f32, 5.0f32), (1.0, 0.0, 9.0), (0.5, 5.0, 9.0), (1.0, 50.0, 9.0), (1.0, 0.0, 0.1)];
+    let mut header = [0.0f32; 17];
+    header[0] = 0.25;
+    (header[1], header[6], header[12]) = (1.0, 1.0, 1.0);
+    let counts = [320, 200, squares.len() as u32 * 4, squares.len() as u32 * 6, squares.len() as u32];
+    floats(&counts.map(f32::from_bits));
+    floats(&header);
+    let corners = |&(half, x, z): &(f32, f32, f32)| {
+        [[x - half, -half, z], [x + half, -half, z], [x + half, half, z], [x - half, half, z]]
+    };
+    squares.iter().for_each(|s| floats(corners(s).as_flattened()));
+    squares.iter().for_each(|_| floats(&[0, 1, 2, 0, 2, 3].map(f32::from_bits)));
+    for (i, square) in squares.iter().enumerate() {
+        let [lo, _, hi, _] = corners(square);
+        // Only the first one is an occluder.
+        floats(&[i as u32 * 4, i as u32 * 6, 2, u32::from(i == 0)].map(f32::from_bits));
+        floats(&lo);
+        floats(&hi);
+    }
+
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (scene, result) = (folder.path().join("scene"), folder.path().join("result"));
+    std::fs::write(&scene, &bytes).expect("the scene is written");
+    for rule in [&[][..], &[("QUICK_MASK", "1")], &[("QUICK_MASK", "0")]] {
+        let program = compile("demo.cpp", Link::Static, rule, folder.path());
+        let output = native::run(Command::new(program).arg(&scene).arg(&result)).unwrap_or_else(|e| panic!("{e}"));
+        assert!(output.contains("33.3% of those in view"), "{output}");
+        let found = std::fs::read(&result).expect("the result is written");
+        assert_eq!(found[..5], [0, 1, 0, 3, 3], "{rule:?}");
+        let depth: Vec<f32> = found[5..].as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
+        assert_eq!(depth.len(), 320 * 200);
+        assert!((depth[100 * 320 + 160] - 0.2).abs() < 1e-6, "{}", depth[100 * 320 + 160]);
+        assert!(depth[0] < 0.0);
+    }
+
+    // A file that is cut short is refused.
+    std::fs::write(&scene, &bytes[..200]).expect("the scene is written");
+    let program = compile("demo.cpp", Link::Static, &[], folder.path());
+    let error = native::run(Command::new(program).arg(&scene).arg(&result)).expect_err("a cut scene is accepted");
+    assert!(error.contains("cut short"), "{error}");
+}
