@@ -134,7 +134,7 @@ fn d05_nan_and_infinite_vertices_are_dropped_and_counted() {
             assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Ok(Visible), "{who} {bad}");
             assert_eq!(moc.statistics().occluders.num_dropped_triangles, drawn, "{who} {bad}");
             // The good triangles of the same call are drawn.
-            let mut mesh = vec![wall(1.0); 2].concat();
+            let mut mesh = [wall(1.0); 2].concat();
             mesh[0][0] = bad;
             draw_clip(&mut moc, &mesh);
             assert!(depth(&moc).iter().all(|d| *d > 0.0), "{who} {bad}: the good triangle is missing");
@@ -318,8 +318,8 @@ fn d10_buffers_of_other_instruction_sets_and_rules_merge() {
 fn d11_full_lists_take_no_more_and_say_so() {
     const GUARD: f32 = 123.5;
     every((256, 128), |moc| {
-        let mut storage = vec![GUARD; 9 * 5 + 4];
-        let mesh = vec![wall(1.0); 8].concat();
+        let mut storage = [GUARD; 9 * 5 + 4];
+        let mesh = [wall(1.0); 8].concat();
         let indices: Vec<u32> = (0..24).collect();
         let mut lists = [TriList::new(&mut storage[..9 * 5])];
         let vertices = Vertices::from_clip_space(&mesh);

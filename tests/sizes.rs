@@ -158,6 +158,10 @@ fn scissor_rectangles_are_honoured_exactly() {
         [0, 40, 200, 45],
         [96, 16, 160, 40],
         [0, 8, 192, 16],
+        // To the end of the last tiles, though the screen ends before.
+        [192, 40, 224, 48],
+        // Empty.
+        [64, 8, 64, 16],
     ];
     every((w, h), |mut moc| {
         let mesh = wall(2.0);
@@ -192,8 +196,10 @@ fn other_scissor_rectangles_are_refused() {
             [0, 0, 32, 9],
             [-32, 0, 32, 8],
             [0, -8, 32, 8],
-            [0, 0, 224, 8],
-            [0, 0, 32, 48],
+            [0, 0, 256, 8],
+            [0, 0, 32, 56],
+            [32, 0, 0, 8],
+            [0, 8, 32, 0],
             [0, 0, i32::MAX, 8],
             [i32::MIN, 0, 32, 8],
             [i32::MIN, i32::MIN, i32::MAX, i32::MAX],

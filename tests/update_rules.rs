@@ -110,7 +110,7 @@ fn run(rule: UpdateRule, implementation: Implementation, axis: YAxis, steps: &[S
 fn sequences(rule: UpdateRule) {
     for (i, &implementation) in Implementation::available().iter().enumerate() {
         for axis in support::AXES {
-            check(350, i as u64 * 2 + axis as u64, &steps(), |steps| run(rule, implementation, axis, &steps));
+            check(600, i as u64 * 2 + axis as u64, &steps(), |steps| run(rule, implementation, axis, &steps));
         }
     }
 }

@@ -28,7 +28,7 @@ impl Homogeneous {
         let rows = [cross(&v[1], &v[2]), cross(&v[2], &v[0]), cross(&v[0], &v[1])];
         let det = v[0][0] * rows[0][0] + v[0][1] * rows[0][1] + v[0][2] * rows[0][2];
         let length = |a: &[f64; 3]| a.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if det.abs() < 1e-9 * length(&v[0]) * length(&v[1]) * length(&v[2]) {
+        if det.abs() <= 1e-9 * length(&v[0]) * length(&v[1]) * length(&v[2]) {
             return None;
         }
         let (w, h) = (size.0 as f64, size.1 as f64);

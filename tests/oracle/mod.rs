@@ -77,13 +77,16 @@ pub fn useful_depth(t: &Triangle, column: usize, row: usize) -> f64 {
     let nearest = t.iter().fold(0.0, |m: f64, v| m.max(v.z));
     let side = |a: &Vertex, b: &Vertex| ((b.x - a.x) as f64).hypot((b.y - a.y) as f64);
     let longest = side(&t[0], &t[1]).max(side(&t[1], &t[2])).max(side(&t[2], &t[0]));
-    if (area(t).abs() as f64) < longest * (2 * UNIT) as f64 {
+    let height = area(t).abs() as f64 / longest;
+    if height < (2 * UNIT) as f64 {
         return farthest * 0.999;
     }
+    // Single precision holds the plane of a long triangle less well.
+    let slack = nearest * (0.001 + 1e-5 * longest / height);
     let (x, y) = (column as i64 / 8 * 8 * UNIT, row as i64 / 4 * 4 * UNIT);
     let corners = [(x, y), (x + 8 * UNIT, y), (x, y + 4 * UNIT), (x + 8 * UNIT, y + 4 * UNIT)];
     let block = corners.iter().fold(f64::MAX, |m, &(x, y)| m.min(depth_at(t, x, y)));
-    (block.max(farthest) - 0.001 * nearest).max(farthest * 0.999)
+    (block.max(farthest) - slack).max(farthest * 0.999)
 }
 
 /// An exact depth buffer: the nearest of all that was drawn, in any order.

@@ -164,6 +164,11 @@ pub fn conservative(depth: &[f32], oracle: &Oracle) -> Result<(), String> {
     Ok(())
 }
 
+/// How many times the usual number of cases to run: TEST_EFFORT, 1 when it is not set. Another effort runs other cases.
+fn effort() -> u32 {
+    std::env::var("TEST_EFFORT").map_or(1, |n| n.parse().expect("TEST_EFFORT is a number"))
+}
+
 /// Runs a property on the same cases every time, and shows the smallest that fails.
 pub fn check<S: proptest::strategy::Strategy>(
     cases: u32,
@@ -174,9 +179,9 @@ pub fn check<S: proptest::strategy::Strategy>(
     S::Value: std::fmt::Debug,
 {
     let config = Config {
-        cases,
+        cases: cases * effort(),
         failure_persistence: None,
-        rng_seed: RngSeed::Fixed(seed),
+        rng_seed: RngSeed::Fixed(seed + 1000 * u64::from(effort() - 1)),
         max_shrink_iters: 2000,
         ..Config::default()
     };
