@@ -26,3 +26,8 @@ pub use types::{
     Statistics, UpdateRule, VertexLayout, YAxis,
 };
 pub use vertices::Vertices;
+
+/// The README's program is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

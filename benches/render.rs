@@ -1,0 +1,45 @@
+//! Whole frames: a clear and every object of a scene, by scene, order and rule; and by instruction set.
+
+mod common;
+
+use common::{ORDERS, Order, RULES, views};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
+
+fn scenes(c: &mut Criterion) {
+    let mut group = c.benchmark_group("render");
+    for (order_name, order) in ORDERS {
+        for view in views(order) {
+            group.throughput(Throughput::Elements(view.triangles()));
+            for (rule_name, rule) in RULES {
+                let mut moc = common::object(rule);
+                group.bench_function(BenchmarkId::new(format!("{}/{order_name}", view.name), rule_name), |b| {
+                    b.iter(|| {
+                        moc.clear_buffer().expect("there is a buffer");
+                        view.draw(&mut moc);
+                    });
+                });
+            }
+        }
+    }
+}
+
+fn instruction_sets(c: &mut Criterion) {
+    let mut group = c.benchmark_group("instruction-set");
+    for view in views(Order::Near) {
+        group.throughput(Throughput::Elements(view.triangles()));
+        for &implementation in Implementation::available() {
+            let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
+            moc.set_resolution(common::WIDTH, common::HEIGHT).expect("the size is accepted");
+            group.bench_function(BenchmarkId::new(view.name, format!("{implementation:?}")), |b| {
+                b.iter(|| {
+                    moc.clear_buffer().expect("there is a buffer");
+                    view.draw(&mut moc);
+                });
+            });
+        }
+    }
+}
+
+criterion_group!(benches, scenes, instruction_sets);
+criterion_main!(benches);

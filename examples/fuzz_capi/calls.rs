@@ -1,0 +1,303 @@
+//! The random calls on meshes, rectangles and buffers, and what has to hold after each.
+
+use fastrand::Rng;
+use masked_occlusion_culling::MaskedOcclusionCulling;
+use masked_occlusion_culling::capi::*;
+
+use crate::episode::Memory;
+use crate::family::{Check, Family, OCCLUDED, OK, VIEW_CULLED, VISIBLE, ensure};
+use crate::hostile;
+use crate::memory::{self, Mode};
+use crate::mesh::{self, Mesh};
+
+/// Where a call that answers left its answer alone.
+const UNTOUCHED: i32 = 77;
+
+pub struct Driver<'a> {
+    pub rng: Rng,
+    pub memory: &'a mut Memory,
+    pub families: [Family; 2],
+}
+
+impl Driver<'_> {
+    /// One random call on each member of one family.
+    pub fn step(&mut self, which: usize) -> Check {
+        if self.families[which].size.is_none() && self.rng.u8(..4) != 0 {
+            return self.set_resolution(which);
+        }
+        match self.rng.u8(..100) {
+            0..28 => self.render(which),
+            28..42 => self.test_triangles(which),
+            42..62 => self.test_rect(which),
+            62..72 => self.bins(which),
+            72..75 => self.clear(which),
+            75..82 => self.merge(which),
+            82..85 => self.set_resolution(which),
+            85..89 => self.set_near(which),
+            89..94 => self.check_depth(which).map(|_| ()),
+            94..96 => self.transform(),
+            96..98 => self.getters(which),
+            98 => self.settings(),
+            _ => self.nulls(),
+        }
+    }
+
+    fn render(&mut self, which: usize) -> Check {
+        let before = if self.rng.u8(..8) == 0 { Some(self.check_depth(which)?) } else { None };
+        let mesh = mesh::random(&mut self.rng, self.memory, &self.families[which]);
+        let family = &mut self.families[which];
+        let (status, answer) = family.all("RenderTriangles", |_, moc| render(moc, &mesh))?;
+        check_prediction("RenderTriangles", &mesh, status).map_err(|failure| format!("{failure}\n{mesh}"))?;
+        if status == OK {
+            ensure([VISIBLE, VIEW_CULLED].contains(&answer), || format!("a draw answers {answer}"))?;
+            family.empty &= answer == VIEW_CULLED;
+            return Ok(());
+        }
+        ensure(answer == VISIBLE, || format!("a draw that is refused answers {answer}"))?;
+        match before {
+            Some(before) => {
+                let after = self.check_depth(which)?;
+                ensure(before == after, || format!("a draw that was refused ({status}) changed the buffer"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn test_triangles(&mut self, which: usize) -> Check {
+        let mesh = mesh::random(&mut self.rng, self.memory, &self.families[which]);
+        let family = &self.families[which];
+        let (status, answer) = family.all("TestTriangles", |_, moc| test(moc, &mesh))?;
+        check_prediction("TestTriangles", &mesh, status)?;
+        check_answer("TestTriangles", family, status, answer).map_err(|failure| format!("{failure}\n{mesh}"))
+    }
+
+    fn test_rect(&mut self, which: usize) -> Check {
+        let rng = &mut self.rng;
+        let [mut x0, mut y0, mut x1, mut y1] = std::array::from_fn(|_| hostile::coordinate(rng));
+        if rng.u8(..4) != 0 {
+            (x0, x1) = (x0.min(x1), x0.max(x1));
+            (y0, y1) = (y0.min(y1), y0.max(y1));
+        }
+        let w = if rng.u8(..6) == 0 { hostile::float(rng) } else { rng.f32() * 12.0 };
+        let family = &self.families[which];
+        let (status, answer) = family.all("TestRect", |_, moc| rect(moc, [x0, y0, x1, y1], w))?;
+        ensure((status == OK) == family.size.is_some(), || format!("TestRect: status {status}"))?;
+        check_answer("TestRect", family, status, answer)
+            .and_then(|()| {
+                let unknowable = [x0, y0, x1, y1, w].iter().any(|c| c.is_nan()) || w <= 0.0;
+                ensure(!(unknowable && answer == OCCLUDED), || "an unknowable rectangle is OCCLUDED".into())
+            })
+            .map_err(|failure| format!("{failure}: rectangle {x0:e} {y0:e} {x1:e} {y1:e} w {w:e}"))
+    }
+
+    fn clear(&mut self, which: usize) -> Check {
+        let family = &mut self.families[which];
+        // SAFETY: live objects that nobody else uses.
+        let (status, ()) = family.all("ClearBuffer", |_, moc| (unsafe { MOC_ClearBuffer(moc) } as i32, ()))?;
+        ensure((status == OK) == family.size.is_some(), || format!("ClearBuffer: status {status}"))?;
+        family.empty |= status == OK;
+        Ok(())
+    }
+
+    fn merge(&mut self, which: usize) -> Check {
+        let with_itself = self.rng.u8(..12) == 0;
+        let shift = self.rng.usize(..8);
+        let (mine, other) = (&self.families[which], &self.families[if with_itself { which } else { 1 - which }]);
+        // A partner on another instruction set has the same bits, so the result is the same.
+        let partner = |i: usize| other.members[if with_itself { i } else { (i + shift) % other.members.len() }];
+        // SAFETY: live objects that nobody else uses.
+        let call = |i: usize, moc| (unsafe { MOC_MergeBuffer(moc, partner(i)) } as i32, ());
+        let (status, ()) = mine.all("MergeBuffer", call)?;
+        let fits = mine.size.is_some() && mine.size == other.size && mine.y_axis == other.y_axis;
+        ensure((status == OK) == fits, || {
+            format!("MergeBuffer: status {status} for {:?}, {:?}", mine.size, other.size)
+        })?;
+        if status == OK {
+            let empty = mine.empty && other.empty;
+            self.families[which].empty = empty;
+        }
+        Ok(())
+    }
+
+    fn set_resolution(&mut self, which: usize) -> Check {
+        let (width, height) = match self.families[1 - which].size {
+            // The same size as the other family has, so that merging is allowed.
+            Some(size) if self.rng.bool() => size,
+            _ => hostile::resolution(&mut self.rng),
+        };
+        let mode = [Mode::Works, Mode::Works, Mode::Works, Mode::Fails, Mode::Misaligns][self.rng.usize(..5)];
+        memory::set_mode(mode);
+        let family = &mut self.families[which];
+        let called = family.all("SetResolution", |_, moc| {
+            // SAFETY: live objects that nobody else uses.
+            (unsafe { MOC_SetResolution(moc, width, height) } as i32, ())
+        });
+        memory::set_mode(Mode::Works);
+        let (status, ()) = called?;
+        let accepted = (1..=16_384).contains(&width) && (1..=16_384).contains(&height);
+        let expected = if !accepted {
+            MOC_Status::MOC_STATUS_INVALID_SIZE as i32
+        } else if family.own_allocator && !matches!(mode, Mode::Works) && family.size != Some((width, height)) {
+            MOC_Status::MOC_STATUS_OUT_OF_MEMORY as i32
+        } else {
+            OK
+        };
+        ensure(status == expected, || format!("SetResolution({width}, {height}): {status} instead of {expected}"))?;
+        if status == OK {
+            family.size = Some((width, height));
+            family.empty = true;
+        }
+        Ok(())
+    }
+
+    fn set_near(&mut self, which: usize) -> Check {
+        let near = if self.rng.bool() { self.rng.f32() } else { hostile::float(&mut self.rng) };
+        let family = &mut self.families[which];
+        // SAFETY: live objects that nobody else uses.
+        let call = |_, moc| (unsafe { MOC_SetNearClipPlane(moc, near) } as i32, ());
+        let (status, ()) = family.all("SetNearClipPlane", call)?;
+        ensure((status == OK) == near.is_finite(), || format!("SetNearClipPlane({near:e}): status {status}"))?;
+        if status == OK {
+            family.near = near;
+        }
+        Ok(())
+    }
+
+    /// Reads the depth of every pixel, checks it, and returns its bits from the first row on.
+    pub fn check_depth(&mut self, which: usize) -> Check<Vec<u32>> {
+        let family = &self.families[which];
+        let (width, height) = family.size.unwrap_or((1, 1));
+        let pixels = width as usize * height as usize;
+        let (flip, checked, at_end) = (self.rng.bool(), self.rng.bool(), self.rng.bool());
+        let depth = self.memory.depth.place(pixels * 4, at_end).cast::<f32>();
+        let mut first: Vec<f32> = Vec::new();
+        let (status, ()) = family.all("ComputePixelDepthBuffer", |i, moc| {
+            // SAFETY: a live object; `depth` has room for every pixel, and nobody else uses it.
+            let (status, pixels) = unsafe {
+                depth.cast::<u8>().write_bytes(0xee, pixels * 4);
+                let status = if checked {
+                    MOC_ComputePixelDepthBufferChecked(moc, depth, pixels, flip.into())
+                } else {
+                    MOC_ComputePixelDepthBuffer(moc, depth, flip.into())
+                };
+                (status as i32, std::slice::from_raw_parts(depth, pixels))
+            };
+            if i == 0 {
+                first = pixels.to_vec();
+            }
+            let differ = first.iter().zip(pixels).position(|(a, b)| a.to_bits() != b.to_bits());
+            if let Some(at) = differ {
+                let (x, y) = (at % width as usize, at / width as usize);
+                eprintln!("at ({x}, {y}) the first object has {:e}, object {i} {:e}", first[at], pixels[at]);
+            }
+            // A status that no function gives stands for the difference.
+            (if differ.is_some() { -1 } else { status }, ())
+        })?;
+        ensure((status == OK) == family.size.is_some(), || format!("ComputePixelDepthBuffer: status {status}"))?;
+        if status != OK {
+            return Ok(Vec::new());
+        }
+        let wrong = first.iter().position(|d| !d.is_finite() || family.empty && *d >= 0.0);
+        ensure(wrong.is_none(), || format!("pixel {wrong:?} has depth {:e}", first[wrong.unwrap_or(0)]))?;
+        let nearest = first.iter().copied().fold(0.0, f32::max);
+        if nearest > 0.0 {
+            let w = 0.999 / nearest;
+            let (_, answer) = family.all("TestRect", |_, moc| rect(moc, [-1.0, -1.0, 1.0, 1.0], w))?;
+            ensure(answer == VISIBLE, || format!("a rectangle nearer than all that was drawn answers {answer}"))?;
+        }
+        let rows = first.chunks(width as usize);
+        let rows: Vec<&[f32]> = if flip { rows.rev().collect() } else { rows.collect() };
+        Ok(rows.concat().iter().map(|d| d.to_bits()).collect())
+    }
+}
+
+pub(crate) fn check_prediction(name: &str, mesh: &Mesh, status: i32) -> Check {
+    match mesh.refused {
+        Some(refused) => ensure((status != OK) == refused, || format!("{name}: status {status}, refused is {refused}")),
+        None => Ok(()),
+    }
+}
+
+fn check_answer(name: &str, family: &Family, status: i32, answer: i32) -> Check {
+    let allowed: &[i32] = if status == OK { &[VISIBLE, OCCLUDED, VIEW_CULLED] } else { &[VISIBLE] };
+    ensure(allowed.contains(&answer), || format!("{name} answers {answer} with status {status}"))?;
+    ensure(!(family.empty && answer == OCCLUDED), || format!("{name}: OCCLUDED by an empty buffer"))
+}
+
+fn rect(moc: *const MaskedOcclusionCulling, [x0, y0, x1, y1]: [f32; 4], w: f32) -> (i32, i32) {
+    let mut answer = UNTOUCHED;
+    // SAFETY: a live object that nobody else uses, or null.
+    let status = unsafe { MOC_TestRect(moc, x0, y0, x1, y1, w, &mut answer) };
+    (status as i32, answer)
+}
+
+/// Draws a mesh, by the entry point that it is meant for.
+fn render(moc: *mut MaskedOcclusionCulling, m: &Mesh) -> (i32, i32) {
+    let mut answer = UNTOUCHED;
+    // SAFETY: a live object; each pointer is null or valid, and where the length of the vertices is not told,
+    // the layout is kept and every index is in range.
+    let status = unsafe {
+        if m.checked {
+            MOC_RenderTrianglesChecked(
+                moc,
+                m.vertices,
+                m.vertex_floats,
+                m.triangles,
+                m.n_triangles,
+                m.matrix,
+                m.winding,
+                m.clip_planes,
+                m.layout,
+                &mut answer,
+            )
+        } else {
+            MOC_RenderTriangles(
+                moc,
+                m.vertices,
+                m.triangles,
+                m.n_triangles,
+                m.matrix,
+                m.winding,
+                m.clip_planes,
+                m.layout,
+                &mut answer,
+            )
+        }
+    };
+    (status as i32, answer)
+}
+
+/// Tests a mesh likewise.
+fn test(moc: *const MaskedOcclusionCulling, m: &Mesh) -> (i32, i32) {
+    let mut answer = UNTOUCHED;
+    // SAFETY: as in `render`.
+    let status = unsafe {
+        if m.checked {
+            MOC_TestTrianglesChecked(
+                moc,
+                m.vertices,
+                m.vertex_floats,
+                m.triangles,
+                m.n_triangles,
+                m.matrix,
+                m.winding,
+                m.clip_planes,
+                m.layout,
+                &mut answer,
+            )
+        } else {
+            MOC_TestTriangles(
+                moc,
+                m.vertices,
+                m.triangles,
+                m.n_triangles,
+                m.matrix,
+                m.winding,
+                m.clip_planes,
+                m.layout,
+                &mut answer,
+            )
+        }
+    };
+    (status as i32, answer)
+}

@@ -1,0 +1,79 @@
+//! One sequence of calls on two families of objects, and what has to hold at its end.
+
+use std::fmt;
+
+use fastrand::Rng;
+
+use crate::calls::Driver;
+use crate::family::{Check, Family, ensure};
+use crate::guarded::Guarded;
+use crate::memory;
+
+/// The arrays that calls read and write, all of them guarded.
+pub struct Memory {
+    pub vertices: Guarded,
+    pub indices: Guarded,
+    pub matrix: Guarded,
+    pub layout: Guarded,
+    pub scissor: Guarded,
+    pub depth: Guarded,
+    /// For each member of a family: the list structs, and what they point to.
+    pub lists: Vec<(Guarded, Guarded)>,
+}
+
+impl Memory {
+    pub fn new() -> Self {
+        Self {
+            vertices: Guarded::new(1 << 16),
+            indices: Guarded::new(1 << 16),
+            matrix: Guarded::new(1 << 12),
+            layout: Guarded::new(1 << 12),
+            scissor: Guarded::new(1 << 12),
+            depth: Guarded::new(1 << 22),
+            lists: (0..8).map(|_| (Guarded::new(1 << 12), Guarded::new(1 << 20))).collect(),
+        }
+    }
+}
+
+/// What was done so far.
+#[derive(Default)]
+pub struct Tally {
+    pub episodes: u64,
+    pub calls: u64,
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} episodes, {} calls", self.episodes, self.calls)
+    }
+}
+
+/// Runs an episode; the same seed and number give the same calls. A single one is looked at after each call.
+pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mut Tally) -> Check {
+    let mut rng = Rng::with_seed(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number));
+    let families = [family(&mut rng)?, family(&mut rng)?];
+    let mut driver = Driver { rng, memory, families };
+    for call in 0..driver.rng.usize(10..80) {
+        let which = driver.rng.usize(..2);
+        driver.step(which).map_err(|failure| format!("call {call}: {failure}\n{}", driver.families[which]))?;
+        if single {
+            // Closer to the cause, without a change to the calls that follow.
+            let rng = driver.rng.clone();
+            driver.check_depth(which).map_err(|failure| format!("after call {call}: {failure}"))?;
+            driver.rng = rng;
+        }
+        tally.calls += driver.families[0].members.len() as u64;
+    }
+    for which in 0..2 {
+        driver.check_depth(which)?;
+        driver.check_statistics(which)?;
+    }
+    drop(driver);
+    tally.episodes += 1;
+    ensure(memory::live_blocks() == 0, || format!("{} blocks of memory were not freed", memory::live_blocks()))
+}
+
+fn family(rng: &mut Rng) -> Check<Family> {
+    // The same axis more often than not, so that merging is allowed.
+    Family::new(rng.i32(0..3), i32::from(rng.u8(..4) == 0), rng.bool())
+}

@@ -1,0 +1,99 @@
+//! Objects with the same settings on every instruction set: what one does, all have to do.
+
+use std::ptr::null_mut;
+
+use masked_occlusion_culling::MaskedOcclusionCulling;
+use masked_occlusion_culling::capi::*;
+
+use crate::memory;
+
+pub const OK: i32 = MOC_Status::MOC_STATUS_OK as i32;
+pub const VISIBLE: i32 = MOC_CullingResult::MOC_VISIBLE as i32;
+pub const OCCLUDED: i32 = MOC_CullingResult::MOC_OCCLUDED as i32;
+pub const VIEW_CULLED: i32 = MOC_CullingResult::MOC_VIEW_CULLED as i32;
+
+/// What went wrong, in words.
+pub type Check<T = ()> = Result<T, String>;
+
+pub fn ensure(holds: bool, what: impl FnOnce() -> String) -> Check {
+    if holds { Ok(()) } else { Err(what()) }
+}
+
+/// One object for each instruction set of this processor.
+pub struct Family {
+    pub members: Vec<*mut MaskedOcclusionCulling>,
+    pub size: Option<(u32, u32)>,
+    pub near: f32,
+    pub update_rule: i32,
+    pub y_axis: i32,
+    pub own_allocator: bool,
+    /// Nothing was drawn since it was cleared.
+    pub empty: bool,
+}
+
+impl Family {
+    pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool) -> Check<Self> {
+        let mut family =
+            Self { members: Vec::new(), size: None, near: 0.0, update_rule, y_axis, own_allocator, empty: true };
+        let mut seen = Vec::new();
+        for implementation in [-1, 0, 1, 2, 3, 16] {
+            let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
+                if own_allocator { (Some(memory::alloc), Some(memory::free)) } else { (None, None) };
+            let settings = MOC_Settings { implementation, update_rule, y_axis, precise_coverage: 1, alloc, free };
+            let (mut moc, mut used) = (null_mut(), 0);
+            // SAFETY: the settings and the place for the object are valid, the callbacks are an allocator.
+            let status = unsafe { MOC_Create(&settings, &mut moc) } as i32;
+            ensure(status == OK && !moc.is_null(), || format!("MOC_Create: status {status} for good settings"))?;
+            family.members.push(moc);
+            // SAFETY: an object just made, and a valid place.
+            let status = unsafe { MOC_GetImplementation(moc, &mut used) } as i32;
+            ensure(status == OK, || format!("MOC_GetImplementation: status {status}"))?;
+            if seen.contains(&used) {
+                family.members.pop();
+                // SAFETY: an object just made, forgotten here.
+                unsafe { MOC_Destroy(moc) };
+            }
+            seen.push(used);
+        }
+        Ok(family)
+    }
+
+    /// Makes the same call on every member, which must give the same. A call gives its status first.
+    pub fn all<T: PartialEq + std::fmt::Debug>(
+        &self,
+        name: &str,
+        mut call: impl FnMut(usize, *mut MaskedOcclusionCulling) -> (i32, T),
+    ) -> Check<(i32, T)> {
+        let mut first: Option<(i32, T)> = None;
+        for (i, &moc) in self.members.iter().enumerate() {
+            let got = call(i, moc);
+            // The last status says that the library failed inside: never a right answer.
+            ensure((OK..MOC_Status::MOC_STATUS_INTERNAL as i32).contains(&got.0), || {
+                format!("{name}: status {} from object {i}", got.0)
+            })?;
+            match &first {
+                None => first = Some(got),
+                Some(first) => ensure(*first == got, || {
+                    format!("{name}: the first object gives {first:?}, object {i} {got:?} (status, answer)")
+                })?,
+            }
+        }
+        first.ok_or_else(|| "a family without members".into())
+    }
+}
+
+impl std::fmt::Display for Family {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { size, near, update_rule, y_axis, empty, .. } = self;
+        write!(f, "size {size:?}, near {near:e}, rule {update_rule}, y axis {y_axis}, empty {empty}")
+    }
+}
+
+impl Drop for Family {
+    fn drop(&mut self) {
+        for &moc in &self.members {
+            // SAFETY: made in `new`, destroyed here once.
+            unsafe { MOC_Destroy(moc) };
+        }
+    }
+}
