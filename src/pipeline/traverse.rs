@@ -91,17 +91,22 @@ macro_rules! for_each_tile {
         let (z, across, down) = ($t.f($batch.z[$lane]), $t.f($batch.z_across[$lane]), $t.f($batch.z_down[$lane]));
         let column = $t.and($t.iota(), $t.i(3));
         let half = $t.sra::<2>($t.iota());
-        for $y in y0.max(clip.y0)..=y1.min(clip.y1.wrapping_sub(1)) {
+        let mut next_row = y0.max(clip.y0);
+        while next_row <= y1 && next_row < clip.y1 {
+            let $y = next_row;
+            next_row += 1;
             let strip = Strip::new($t, $batch, $lane, $y, $buffer.tiles_w() as f64 * TILE_WIDTH as f64);
             let (mut first, mut last) = (x0.max(clip.x0) as i32, x1.min(clip.x1.wrapping_sub(1)) as i32);
-            if x1 - x0 >= 2 {
+            if x1 - x0 >= 4 {
                 let (reach_first, reach_last) = strip.reach($t);
                 (first, last) = (first.max(reach_first), last.min(reach_last));
             }
             let sub_row = $t.add_i($t.i(2 * ($y - y0) as i32), half);
             let z_row = $t.add(z, $t.mul(down, $t.to_f(sub_row)));
-            for $x in first..=last {
-                let $x = $x as u32;
+            let mut next = first;
+            while next <= last {
+                let $x = next as u32;
+                next += 1;
                 let $index = ($y * $buffer.tiles_w() + $x) as usize;
                 // SAFETY: tiles of a triangle's box are tiles of the buffer.
                 let $least = unsafe { $buffer.least().add($index) };
