@@ -4,12 +4,12 @@
 //! strewn too widely for that, its corners are projected one triangle at a time.
 
 use super::clip::{self, Clipped};
+use super::last_step::LastStep;
 use super::project::{Camera, Reader, outcode, project};
 use super::scratch::{
     CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch, pack,
 };
 use super::setup::{Batch, Purpose, Setup, set_up};
-use super::traverse::LastStep;
 use super::{Facing, Mesh};
 use crate::CullingResult;
 use crate::buffer::Buffer;
@@ -85,7 +85,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, clip: last.clip(buffer) };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);

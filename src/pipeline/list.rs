@@ -1,10 +1,10 @@
 //! Triangle lists back into the stream: projected already, but from memory that the caller could write to.
 
 use super::Facing;
+use super::last_step::LastStep;
 use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::scratch::{CHUNK_VERTICES, Scratch, pack};
 use super::setup::{Batch, Setup, set_up};
-use super::traverse::LastStep;
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::buffer::Buffer;
 use crate::simd::Simd;
@@ -20,7 +20,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, clip: last.clip(buffer) };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
     let mut tally = Tally::default();
     let mut position = 0;
     while position < list.len() {

@@ -5,8 +5,8 @@
 //! indices  ──> cull       reject what faces away, lies outside or holds no pixel centre; compact the rest
 //!              clip       the few that cross the near plane or leave the guard band, back into the stream in order
 //!          ──> setup      edges and depth plane, full vectors of survivors
-//!          ──> traverse   the tiles of each: coverage, depth bound, then
-//!                         update (draw), compare (query), or none of that and into lists (bin)
+//!          ──> traverse   the tiles of each: coverage, depth bound
+//!          ──> last step  update (draw), compare (query), or, before the tiles, into lists (bin)
 //! ```
 //!
 //! A draw, a query and a bin differ in the last step alone, and in which way they round: a draw to less
@@ -18,6 +18,7 @@
 mod clip;
 mod cull;
 mod edges;
+mod last_step;
 mod list;
 mod project;
 mod scratch;
@@ -31,8 +32,8 @@ use crate::statistics::Tally;
 use crate::vertices::VertexSource;
 use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation, UpdateRule};
 
+use last_step::{Bins, Draw, Query};
 pub(crate) use project::{Camera, transform};
-use traverse::{Bins, Draw, Query};
 
 /// A call's triangles, three indices each, and how they are to be taken.
 pub(crate) struct Mesh<'a> {

@@ -131,6 +131,19 @@ pub(crate) trait Simd: Copy {
         self.gt_i(self.i(n as i32), self.iota())
     }
 
+    /// 1, 2, 4, ... a lane: picks bits of a mask for [`Self::compress`].
+    #[inline(always)]
+    fn one_bit_each(self) -> Self::I {
+        let mut bits = [0_u32; MAX_LANES];
+        let mut lane = 0;
+        while lane < MAX_LANES {
+            bits[lane] = 1 << lane;
+            lane += 1;
+        }
+        // SAFETY: the array holds a vector.
+        unsafe { self.load_i(bits.as_ptr()) }
+    }
+
     fn d(self, x: f64) -> Self::D;
     fn to_d(self, a: Self::F) -> Self::D;
     /// To the nearest f32.

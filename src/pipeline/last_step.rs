@@ -1,0 +1,200 @@
+//! The last step: what a draw, a query and a binning do with triangles that were set up.
+
+use core::marker::PhantomData;
+use core::mem::MaybeUninit;
+
+use super::edges::bits;
+use super::setup::{Alive, Batch, Purpose};
+use super::traverse::{Lists, TileStep, traverse};
+use crate::bins::TriList;
+use crate::buffer::{Buffer, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect, UNTOUCHED, fresh};
+use crate::simd::Simd;
+use crate::statistics::Tally;
+
+/// What is done with triangles that were set up.
+pub(super) trait LastStep {
+    const PURPOSE: Purpose;
+
+    /// Takes the triangles that are alive, in order. False: no more are needed.
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool;
+}
+
+/// Draws into a buffer, inside of a rectangle of tiles.
+pub(super) struct Draw<'a, T, R> {
+    t: T,
+    buffer: &'a Buffer,
+    clip: TileRect,
+    lists: MaybeUninit<Lists>,
+    rule: PhantomData<R>,
+}
+
+impl<'a, T: Simd, R: Rule> Draw<'a, T, R> {
+    #[inline(always)]
+    pub fn new(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
+        const { assert!(T::LANES == SUB_TILES) }
+        Self { t, buffer, clip, lists: Lists::new(), rule: PhantomData }
+    }
+}
+
+impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
+    const PURPOSE: Purpose = Purpose::Draw;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
+        for lane in bits(alive.rasterized) {
+            tally.traversed += tiles_in(batch, lane, self.clip);
+        }
+        let mut update = Update::<R> { buffer: self.buffer, updated: 0, merged: 0, rule: PhantomData };
+        traverse(self.t, self.buffer, self.clip, batch, alive, &mut self.lists, &mut update);
+        tally.updated += update.updated;
+        tally.merged += update.merged;
+        true
+    }
+}
+
+/// Tiles of a triangle's box inside of a rectangle.
+#[inline(always)]
+fn tiles_in(batch: &Batch, lane: usize, clip: TileRect) -> u64 {
+    let wide = (batch.tile_x1[lane] + 1).min(clip.x1).saturating_sub(batch.tile_x0[lane].max(clip.x0));
+    let high = (batch.tile_y1[lane] + 1).min(clip.y1).saturating_sub(batch.tile_y0[lane].max(clip.y0));
+    u64::from(wide) * u64::from(high)
+}
+
+struct Update<'a, R> {
+    buffer: &'a Buffer,
+    updated: u64,
+    merged: u64,
+    rule: PhantomData<R>,
+}
+
+impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
+    const DRAWS: bool = true;
+
+    #[inline(always)]
+    fn open(t: T, least: T::F, nearest: T::F) -> T::M {
+        t.lt(least, nearest)
+    }
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, mut covered: T::I, depth: T::F) -> bool {
+        let border = self.buffer.border(x, y);
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        let inserted = unsafe {
+            let least = self.buffer.least().add(index);
+            let tile = self.buffer.tile(index);
+            if let Some(outside) = border {
+                let outside = t.load_i(outside.as_ptr());
+                let nothing = t.eq_i(t.and_not(outside, covered), t.i(0));
+                covered = t.select_i(nothing, t.i(0), t.or(covered, outside));
+            }
+            let mut planes = if *least == UNTOUCHED { fresh::<T, R>(t, border) } else { R::load(t, tile) };
+            let inserted = R::insert(t, &mut planes, covered, depth);
+            R::store(t, tile, &planes);
+            *least = t.least(planes.z0);
+            inserted
+        };
+        self.updated += u64::from(t.mask_bits(inserted.live) != 0);
+        self.merged += u64::from(t.mask_bits(inserted.merged) != 0);
+        true
+    }
+}
+
+/// Compares with a buffer until something may be seen.
+pub(super) struct Query<'a, T, R> {
+    t: T,
+    buffer: &'a Buffer,
+    lists: MaybeUninit<Lists>,
+    rule: PhantomData<R>,
+}
+
+impl<'a, T: Simd, R: Rule> Query<'a, T, R> {
+    #[inline(always)]
+    pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
+        const { assert!(T::LANES == SUB_TILES) }
+        Self { t, buffer, lists: Lists::new(), rule: PhantomData }
+    }
+}
+
+impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
+    const PURPOSE: Purpose = Purpose::Query;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
+        let clip = self.buffer.all_tiles();
+        let mut compare = Compare::<R> { buffer: self.buffer, rule: PhantomData };
+        let (seen, tiles) = traverse(self.t, self.buffer, clip, batch, alive, &mut self.lists, &mut compare);
+        tally.traversed += tiles;
+        // Triangles after the first that may be seen do not count, however many a vector has.
+        let counted = seen.map_or(u32::MAX, |lane| (2 << lane) - 1);
+        tally.rasterized += u64::from((alive.rasterized & counted).count_ones());
+        seen.is_none()
+    }
+}
+
+struct Compare<'a, R> {
+    buffer: &'a Buffer,
+    rule: PhantomData<R>,
+}
+
+impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
+    const DRAWS: bool = false;
+
+    #[inline(always)]
+    fn open(t: T, least: T::F, nearest: T::F) -> T::M {
+        t.le(least, nearest)
+    }
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, mut covered: T::I, depth: T::F) -> bool {
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        unsafe {
+            if let Some(outside) = self.buffer.border(x, y) {
+                covered = t.and_not(t.load_i(outside.as_ptr()), covered);
+            }
+            let hidden = if *self.buffer.least().add(index) == UNTOUCHED {
+                t.eq_i(covered, t.i(0))
+            } else {
+                R::hides(t, &R::load(t, self.buffer.tile(index)), covered, depth)
+            };
+            t.mask_bits(hidden) == 0xff
+        }
+    }
+}
+
+/// Appends to the lists of bins.
+pub(super) struct Bins<'b, 'c> {
+    lists: &'b mut [TriList<'c>],
+    bin_size: (u32, u32),
+    bins: (u32, u32),
+    /// Some list had no room.
+    pub full: bool,
+}
+
+impl<'b, 'c> Bins<'b, 'c> {
+    pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32)) -> Self {
+        Self { lists, bin_size, bins, full: false }
+    }
+}
+
+impl LastStep for Bins<'_, '_> {
+    const PURPOSE: Purpose = Purpose::Bin;
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
+        let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
+        for lane in bits(alive.lanes) {
+            let triangle = core::array::from_fn(|k| batch.corners[k][lane]);
+            // The last bin takes what division leaves over.
+            let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
+            let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
+            for y in row(batch.tile_y0[lane])..=row(batch.tile_y1[lane]) {
+                for x in column(batch.tile_x0[lane])..=column(batch.tile_x1[lane]) {
+                    self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
+                }
+            }
+        }
+        true
+    }
+}
