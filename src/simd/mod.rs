@@ -180,7 +180,13 @@ pub(crate) fn available() -> &'static [Implementation] {
     {
         const ALL: [Implementation; 5] = [Scalar, Sse2, Sse41, Avx2, Avx512];
         let sse41 = is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3");
-        let avx2 = sse41 && is_x86_feature_detected!("avx2");
+        // Every processor with AVX2 has these, but a virtual machine may hide them.
+        let avx2 = sse41
+            && is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
         let avx512 = avx2
             && is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512bw")
