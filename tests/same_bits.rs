@@ -79,33 +79,33 @@ const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, Updat
 const GOLDEN: [[[u64; 3]; 3]; 5] = [
     [
         // town
-        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0xcb6f_936c_3a86_5af9],
-        [0xd10c_2774_2c83_9a2c, 0x51e5_8a0e_414a_5165, 0xf402_7c09_10ef_0fb2],
-        [0xe32f_8db6_fea7_855b, 0xacab_951a_54f7_c5a5, 0x57ec_12be_9e5d_d509],
+        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0xa1e8_b330_84fd_38c6],
+        [0xd10c_2774_2c83_9a2c, 0x51e5_8a0e_414a_5165, 0xf304_9f9c_b036_bb5f],
+        [0x279a_aa31_6cfd_57e6, 0xe123_71fc_949c_ce85, 0x7c4b_c517_7695_a2cb],
     ],
     [
         // terrain
-        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0xefb3_25fe_fe75_342f],
-        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x56ca_10a2_67fa_5138],
-        [0x8c20_dc61_71be_33ef, 0x5ed9_7ef0_70f1_8fe4, 0x2e40_e6e6_1d8c_8804],
+        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0x195d_af3d_e691_6378],
+        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x0dac_54f3_9dc3_1d9c],
+        [0x2157_b66f_b031_f28c, 0xc941_995d_11ff_0d45, 0x79bf_2b31_4bac_51d2],
     ],
     [
         // blocks
-        [0x0c8d_a2a7_0155_16f5, 0x9661_0878_3e74_21a5, 0x45ff_9b5e_65be_fab1],
-        [0xf20a_ba6f_c07f_df88, 0x1602_cffc_ed45_d625, 0x3bb4_7ebd_db4c_68a1],
-        [0xd3b6_e35a_c933_5150, 0x5bbc_fa2f_de7b_3625, 0xe260_3826_2d29_737a],
+        [0x0c8d_a2a7_0155_16f5, 0x9661_0878_3e74_21a5, 0x4609_7baf_8978_e9cd],
+        [0xf20a_ba6f_c07f_df88, 0x1602_cffc_ed45_d625, 0xe263_1052_427a_a80f],
+        [0xfe30_c394_7539_2eb2, 0x9661_0878_3e74_21a5, 0x8c40_8e21_ee56_80f9],
     ],
     [
         // soup
-        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xa213_7b37_47a0_bb1a],
-        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x89e8_39dd_ba53_af7e],
-        [0x463e_29e8_ae50_2aff, 0x4b17_30e4_8282_8d25, 0xbfd7_dbe7_69a0_5706],
+        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xbafc_5dbb_25cc_5812],
+        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x8cd9_b171_3506_c974],
+        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0xb8fe_658a_3e20_d840],
     ],
     [
         // hostile
-        [0xb995_c810_2633_9d73, 0x2e76_abae_8eb4_9ba5, 0x4bd7_8ce2_8514_e7e7],
-        [0x8b61_6c1b_fa11_30a9, 0x2e76_abae_8eb4_9ba5, 0x8423_f103_c1aa_62e5],
-        [0xc3c9_3141_42a0_f709, 0x2e76_abae_8eb4_9ba5, 0x4bd7_8ce2_8514_e7e7],
+        [0xb995_c810_2633_9d73, 0x2e76_abae_8eb4_9ba5, 0x8e89_3d34_579d_c6d2],
+        [0x8b61_6c1b_fa11_30a9, 0x2e76_abae_8eb4_9ba5, 0x5d68_1be0_324b_bb41],
+        [0xc3c9_3141_42a0_f709, 0x2e76_abae_8eb4_9ba5, 0xdc8a_8fd7_947d_f51f],
     ],
 ];
 

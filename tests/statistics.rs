@@ -1,0 +1,110 @@
+//! Statistics count what they say, and the same on every instruction set, however long the calls are.
+
+mod scenes;
+
+use glam::Mat4;
+use masked_occlusion_culling::{
+    DrawOptions, Implementation, MaskedOcclusionCulling, Settings, TriList, UpdateRule, VertexLayout, Vertices,
+};
+use scenes::Scene;
+
+const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+
+fn vertices(scene: &Scene) -> Vertices<'_> {
+    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
+    Vertices::new(scene.vertices.as_flattened(), layout).unwrap()
+}
+
+fn objects(scene: &Scene, update_rule: UpdateRule) -> Vec<MaskedOcclusionCulling> {
+    let all = Implementation::available();
+    all.iter()
+        .map(|&implementation| {
+            let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, ..Settings::default() });
+            moc.set_resolution(333, 205).unwrap();
+            moc.set_near_clip_plane(scene.near).unwrap();
+            moc
+        })
+        .collect()
+}
+
+fn assert_equal(scene: &Scene, objects: &[MaskedOcclusionCulling], when: &str) {
+    for moc in &objects[1..] {
+        let (who, rule) = (moc.implementation(), moc.update_rule());
+        assert_eq!(moc.statistics(), objects[0].statistics(), "{} {rule:?} {who:?}, {when}", scene.name);
+    }
+}
+
+/// Thousands of triangles in a call: how many are taken at a time must not show.
+fn long_calls(call: impl Fn(&mut MaskedOcclusionCulling, Vertices<'_>, &[u32], &DrawOptions)) {
+    for scene in scenes::all() {
+        let all = scene.objects.concat();
+        let options =
+            DrawOptions { model_to_clip: scene.matrix.as_ref().map(Mat4::from_cols_array), ..DrawOptions::default() };
+        for rule in RULES {
+            let mut objects = objects(&scene, rule);
+            for time in 0..3 {
+                objects.iter_mut().for_each(|moc| call(moc, vertices(&scene), &all, &options));
+                assert_equal(&scene, &objects, &format!("time {time}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn long_draws_count_the_same_everywhere() {
+    long_calls(|moc, vertices, all, options| {
+        moc.render_triangles(vertices, all, options).unwrap();
+    });
+}
+
+#[test]
+fn long_queries_count_the_same_everywhere() {
+    // Of an empty buffer at first, then of one that hides more and more.
+    long_calls(|moc, vertices, all, options| {
+        moc.test_triangles(vertices, all, options).unwrap();
+        moc.render_triangles(vertices, &all[..all.len() / 6 * 3], options).unwrap();
+    });
+}
+
+#[test]
+fn lists_count_the_same_everywhere() {
+    for scene in scenes::all() {
+        let all = scene.objects.concat();
+        let options =
+            DrawOptions { model_to_clip: scene.matrix.as_ref().map(Mat4::from_cols_array), ..DrawOptions::default() };
+        let mut objects = objects(&scene, UpdateRule::ThreeLayer);
+        for moc in &mut objects {
+            let mut storage = vec![0.0; 9 * all.len()];
+            let mut lists = [TriList::new(&mut storage)];
+            moc.bin_triangles(vertices(&scene), &all, &mut lists, 1, 1, &options).unwrap();
+            moc.render_trilist(&lists[0], None).unwrap();
+        }
+        assert_equal(&scene, &objects, "a list");
+    }
+}
+
+#[test]
+fn counts_are_what_was_asked() {
+    for &implementation in Implementation::available() {
+        let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
+        moc.set_resolution(64, 16).unwrap();
+        let wall = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0], [f32::NAN; 4]];
+        let vertices = Vertices::from_clip_space(&wall);
+        // One that faces the eye, one that faces away, one that is no triangle.
+        moc.render_triangles(vertices, &[0, 1, 2, 0, 2, 1, 0, 1, 3], &DrawOptions::default()).unwrap();
+        let drawn = moc.statistics().occluders;
+        assert_eq!((drawn.num_processed_triangles, drawn.num_rasterized_triangles), (3, 1));
+        assert_eq!((drawn.num_tiles_traversed, drawn.num_tiles_updated, drawn.num_tiles_merged), (4, 4, 4));
+        assert_eq!(drawn.num_dropped_triangles, 1);
+        moc.test_rect(-1.0, -1.0, 1.0, 1.0, 2.0).unwrap();
+        moc.test_rect(5.0, 5.0, 6.0, 6.0, 2.0).unwrap();
+        moc.test_triangles(vertices, &[0, 1, 2, 0, 1, 2], &DrawOptions::default()).unwrap();
+        let tested = moc.statistics().occludees;
+        assert_eq!((tested.num_processed_rectangles, tested.num_processed_triangles), (2, 2));
+        assert_eq!(moc.statistics().occluders, drawn);
+        // They are of the object's whole life, not of a frame.
+        moc.clear_buffer().unwrap();
+        moc.set_resolution(32, 8).unwrap();
+        assert_eq!(moc.statistics().occludees, tested);
+    }
+}
