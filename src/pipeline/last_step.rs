@@ -5,10 +5,13 @@ use core::mem::MaybeUninit;
 
 use super::edges::bits;
 use super::setup::{Alive, Batch, Purpose};
-use super::traverse::{Lists, TileStep, traverse};
+use super::traverse::{Lists, TileStep, Way, traverse};
+use crate::UpdateRule;
 use crate::bins::TriList;
-use crate::buffer::{Buffer, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect, UNTOUCHED, fresh};
-use crate::simd::Simd;
+use crate::buffer::{
+    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TileRect, UNTOUCHED, fresh,
+};
+use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
 
 /// What is done with triangles that were set up.
@@ -20,23 +23,22 @@ pub(super) trait LastStep {
 }
 
 /// Draws into a buffer, inside of a rectangle of tiles.
-pub(super) struct Draw<'a, T, R> {
+pub(super) struct Draw<'a, T> {
     t: T,
     buffer: &'a Buffer,
     clip: TileRect,
     lists: MaybeUninit<Lists>,
-    rule: PhantomData<R>,
 }
 
-impl<'a, T: Simd, R: Rule> Draw<'a, T, R> {
+impl<'a, T: Simd> Draw<'a, T> {
     #[inline(always)]
     pub fn new(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
         const { assert!(T::LANES == SUB_TILES) }
-        Self { t, buffer, clip, lists: Lists::new(), rule: PhantomData }
+        Self { t, buffer, clip, lists: Lists::new() }
     }
 }
 
-impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
+impl<T: Simd> LastStep for Draw<'_, T> {
     const PURPOSE: Purpose = Purpose::Draw;
 
     #[inline(always)]
@@ -45,11 +47,42 @@ impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
         for lane in bits(alive.rasterized) {
             tally.traversed += tiles_in(batch, lane, self.clip);
         }
-        let mut update = Update::<R> { buffer: self.buffer, updated: 0, merged: 0, rule: PhantomData };
-        traverse(self.t, self.buffer, self.clip, batch, alive, &mut self.lists, &mut update);
-        tally.updated += update.updated;
-        tally.merged += update.merged;
+        let &mut Self { t, buffer, clip, ref mut lists } = self;
+        // Apart: what comes before does not depend on the rule, and is compiled once for all three.
+        let way = Way { buffer, clip, batch, alive, lists };
+        let Seen { updated, merged, .. } = match buffer.rule() {
+            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer>::new(buffer) }),
+            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick>::new(buffer) }),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate>::new(buffer) }),
+        };
+        tally.updated += updated;
+        tally.merged += merged;
         true
+    }
+}
+
+/// Triangles to be taken to a step, and what came of it.
+struct Traverse<'a, S> {
+    way: Way<'a>,
+    step: S,
+}
+
+struct Seen {
+    /// The lane at which no more were needed.
+    lane: Option<u32>,
+    tiles: u64,
+    updated: u64,
+    merged: u64,
+}
+
+impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
+    type Output = Seen;
+
+    #[inline(always)]
+    fn run(mut self, t: T) -> Seen {
+        let (lane, tiles) = traverse(t, self.way, &mut self.step);
+        let (updated, merged) = self.step.counts();
+        Seen { lane, tiles, updated, merged }
     }
 }
 
@@ -66,6 +99,13 @@ struct Update<'a, R> {
     updated: u64,
     merged: u64,
     rule: PhantomData<R>,
+}
+
+impl<'a, R> Update<'a, R> {
+    #[inline(always)]
+    fn new(buffer: &'a Buffer) -> Self {
+        Self { buffer, updated: 0, merged: 0, rule: PhantomData }
+    }
 }
 
 impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
@@ -98,43 +138,58 @@ impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
         self.merged += u64::from(t.mask_bits(inserted.merged) != 0);
         true
     }
-}
 
-/// Compares with a buffer until something may be seen.
-pub(super) struct Query<'a, T, R> {
-    t: T,
-    buffer: &'a Buffer,
-    lists: MaybeUninit<Lists>,
-    rule: PhantomData<R>,
-}
-
-impl<'a, T: Simd, R: Rule> Query<'a, T, R> {
     #[inline(always)]
-    pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
-        const { assert!(T::LANES == SUB_TILES) }
-        Self { t, buffer, lists: Lists::new(), rule: PhantomData }
+    fn counts(&self) -> (u64, u64) {
+        (self.updated, self.merged)
     }
 }
 
-impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
+/// Compares with a buffer until something may be seen.
+pub(super) struct Query<'a, T> {
+    t: T,
+    buffer: &'a Buffer,
+    lists: MaybeUninit<Lists>,
+}
+
+impl<'a, T: Simd> Query<'a, T> {
+    #[inline(always)]
+    pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
+        const { assert!(T::LANES == SUB_TILES) }
+        Self { t, buffer, lists: Lists::new() }
+    }
+}
+
+impl<T: Simd> LastStep for Query<'_, T> {
     const PURPOSE: Purpose = Purpose::Query;
 
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
-        let clip = self.buffer.all_tiles();
-        let mut compare = Compare::<R> { buffer: self.buffer, rule: PhantomData };
-        let (seen, tiles) = traverse(self.t, self.buffer, clip, batch, alive, &mut self.lists, &mut compare);
-        tally.traversed += tiles;
+        let &mut Self { t, buffer, ref mut lists } = self;
+        let way = Way { buffer, clip: buffer.all_tiles(), batch, alive, lists };
+        let seen = match buffer.rule() {
+            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) }),
+            UpdateRule::Quick => t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) }),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) }),
+        };
+        tally.traversed += seen.tiles;
         // Triangles after the first that may be seen do not count, however many a vector has.
-        let counted = seen.map_or(u32::MAX, |lane| (2 << lane) - 1);
+        let counted = seen.lane.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from((alive.rasterized & counted).count_ones());
-        seen.is_none()
+        seen.lane.is_none()
     }
 }
 
 struct Compare<'a, R> {
     buffer: &'a Buffer,
     rule: PhantomData<R>,
+}
+
+impl<'a, R> Compare<'a, R> {
+    #[inline(always)]
+    fn new(buffer: &'a Buffer) -> Self {
+        Self { buffer, rule: PhantomData }
+    }
 }
 
 impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {

@@ -26,11 +26,11 @@ mod setup;
 mod traverse;
 
 use crate::bins::TriList;
-use crate::buffer::{Accurate, Buffer, Quick, Rule, ThreeLayer, TileRect};
+use crate::buffer::{Buffer, TileRect};
 use crate::simd::{self, Job, Simd};
 use crate::statistics::Tally;
 use crate::vertices::VertexSource;
-use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation, UpdateRule};
+use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation};
 
 use last_step::{Bins, Draw, Query};
 pub(crate) use project::{Camera, transform};
@@ -70,11 +70,7 @@ pub(crate) unsafe fn draw(
     camera: &Camera,
     mesh: &Mesh<'_>,
 ) -> (CullingResult, Tally) {
-    match buffer.rule() {
-        UpdateRule::ThreeLayer => simd::run(implementation, DrawMesh::<ThreeLayer>::new(buffer, camera, mesh)),
-        UpdateRule::Quick => simd::run(implementation, DrawMesh::<Quick>::new(buffer, camera, mesh)),
-        UpdateRule::Accurate => simd::run(implementation, DrawMesh::<Accurate>::new(buffer, camera, mesh)),
-    }
+    simd::run(implementation, DrawMesh { buffer, camera, mesh })
 }
 
 /// Tests a mesh.
@@ -87,11 +83,7 @@ pub(crate) unsafe fn test(
     camera: &Camera,
     mesh: &Mesh<'_>,
 ) -> (CullingResult, Tally) {
-    match buffer.rule() {
-        UpdateRule::ThreeLayer => simd::run(implementation, TestMesh::<ThreeLayer>::new(buffer, camera, mesh)),
-        UpdateRule::Quick => simd::run(implementation, TestMesh::<Quick>::new(buffer, camera, mesh)),
-        UpdateRule::Accurate => simd::run(implementation, TestMesh::<Accurate>::new(buffer, camera, mesh)),
-    }
+    simd::run(implementation, TestMesh { buffer, camera, mesh })
 }
 
 /// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True when one was full.
@@ -121,11 +113,7 @@ pub(crate) unsafe fn draw_list(
     list: &TriList<'_>,
     scissor: TileRect,
 ) -> Tally {
-    match buffer.rule() {
-        UpdateRule::ThreeLayer => simd::run(implementation, DrawList::<ThreeLayer>::new(buffer, list, scissor)),
-        UpdateRule::Quick => simd::run(implementation, DrawList::<Quick>::new(buffer, list, scissor)),
-        UpdateRule::Accurate => simd::run(implementation, DrawList::<Accurate>::new(buffer, list, scissor)),
-    }
+    simd::run(implementation, DrawList { buffer, list, scissor })
 }
 
 /// The largest of the indices.
@@ -135,25 +123,18 @@ pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Opti
 
 macro_rules! mesh_job {
     ($job:ident, $last_step:ident) => {
-        struct $job<'a, R> {
+        struct $job<'a> {
             buffer: &'a Buffer,
             camera: &'a Camera,
             mesh: &'a Mesh<'a>,
-            rule: core::marker::PhantomData<R>,
         }
 
-        impl<'a, R: Rule> $job<'a, R> {
-            fn new(buffer: &'a Buffer, camera: &'a Camera, mesh: &'a Mesh<'a>) -> Self {
-                Self { buffer, camera, mesh, rule: core::marker::PhantomData }
-            }
-        }
-
-        impl<R: Rule> Job for $job<'_, R> {
+        impl Job for $job<'_> {
             type Output = (CullingResult, Tally);
 
             #[inline(always)]
             fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output {
-                let mut last = $last_step::<T, R>::new(tile, self.buffer, self.buffer.all_tiles());
+                let mut last = $last_step::new(tile, self.buffer, self.buffer.all_tiles());
                 cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last)
             }
         }
@@ -183,25 +164,18 @@ impl Job for BinMesh<'_, '_, '_> {
     }
 }
 
-struct DrawList<'a, 'b, R> {
+struct DrawList<'a, 'b> {
     buffer: &'a Buffer,
     list: &'a TriList<'b>,
     scissor: TileRect,
-    rule: core::marker::PhantomData<R>,
 }
 
-impl<'a, 'b, R> DrawList<'a, 'b, R> {
-    fn new(buffer: &'a Buffer, list: &'a TriList<'b>, scissor: TileRect) -> Self {
-        Self { buffer, list, scissor, rule: core::marker::PhantomData }
-    }
-}
-
-impl<R: Rule> Job for DrawList<'_, '_, R> {
+impl Job for DrawList<'_, '_> {
     type Output = Tally;
 
     #[inline(always)]
     fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Tally {
-        let mut last = Draw::<T, R>::new(tile, self.buffer, self.scissor);
+        let mut last = Draw::new(tile, self.buffer, self.scissor);
         list::draw(wide, self.buffer, self.list, &mut last)
     }
 }

@@ -291,7 +291,9 @@ pub(super) unsafe fn set_up<S: Simd>(
     let zero = s.f(0.0);
     let plane = if query {
         let corner = s.add(s.max(across_sub, zero), s.max(down_sub, zero));
-        let plane = s.add(first, s.add(corner, margin));
+        // A true point of the occludee has the depth of its snapped counterpart, which may lie this far away.
+        let moved = s.mul(s.add(s.abs(across), s.abs(down)), s.f(QUERY_SLACK as f32));
+        let plane = s.add(first, s.add(s.add(corner, moved), margin));
         s.select(flat, s.f(NOWHERE), plane)
     } else {
         let corner = s.add(s.min(across_sub, zero), s.min(down_sub, zero));

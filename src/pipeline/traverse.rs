@@ -53,6 +53,12 @@ pub(super) trait TileStep<T: Simd> {
     /// # Safety
     /// It is a tile of the buffer, and the caller of the pipeline allowed its use.
     unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, covered: T::I, depth: T::F) -> bool;
+
+    /// Tiles that were updated, and in which the reference depth rose.
+    #[inline(always)]
+    fn counts(&self) -> (u64, u64) {
+        (0, 0)
+    }
 }
 
 /// Room for the lists; not initialised.
@@ -75,20 +81,23 @@ impl Lists {
 const LANE_SHIFT: u32 = 26;
 const GROUP_SHIFT: u32 = 16;
 
-/// Takes the triangles in `alive.lanes`, in order, to `step`, as far as `clip` goes. The lane at which `step` wanted
-/// no more, and how many tiles it was given.
+/// Triangles that were set up, and where they may go.
+pub(super) struct Way<'a> {
+    pub buffer: &'a Buffer,
+    /// Only tiles inside of it are visited.
+    pub clip: TileRect,
+    pub batch: &'a Batch,
+    pub alive: &'a Alive,
+    pub lists: &'a mut MaybeUninit<Lists>,
+}
+
+/// Takes the triangles in `alive.lanes`, in order, to `step`. The lane at which `step` wanted no more, and how many
+/// tiles it was given.
 #[inline(always)]
-pub(super) fn traverse<T: Simd, S: TileStep<T>>(
-    t: T,
-    buffer: &Buffer,
-    clip: TileRect,
-    batch: &Batch,
-    alive: &Alive,
-    memory: &mut MaybeUninit<Lists>,
-    step: &mut S,
-) -> (Option<u32>, u64) {
+pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S) -> (Option<u32>, u64) {
+    let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is an array of `MaybeUninit`.
-    let lists = unsafe { memory.assume_init_mut() };
+    let lists = unsafe { lists.assume_init_mut() };
     let mut todo = alive.lanes;
     let (mut group, mut row) = (0, 0);
     let mut visited = 0;

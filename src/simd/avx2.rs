@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Job, Simd};
+use super::{Apart, Job, Simd};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
@@ -12,6 +12,14 @@ pub(super) struct Avx2(());
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()), Avx2(()))
+}
+
+/// # Safety
+/// As [`enter`].
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[inline(never)]
+unsafe fn apart<J: Apart<Avx2>>(s: Avx2, job: J) -> J::Output {
+    job.run(s)
 }
 
 /// For each mask, the lanes that it keeps, first to last, and then lane 0.
@@ -40,6 +48,12 @@ impl Simd for Avx2 {
     type I = __m256i;
     type M = __m256;
     type D = [__m256d; 2];
+
+    #[inline(always)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        // SAFETY: the token proves the instruction set.
+        unsafe { apart(self, job) }
+    }
 
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> __m256 {

@@ -38,6 +38,10 @@ pub(crate) trait Simd: Copy {
     type M: Copy;
     type D: Copy;
 
+    /// Calls a job in a function of its own, compiled for this token: for what is shared by several callers and
+    /// takes long enough.
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output;
+
     fn f(self, x: f32) -> Self::F;
     fn i(self, x: i32) -> Self::I;
     /// 0, 1, 2, ... LANES - 1.
@@ -156,6 +160,12 @@ pub(crate) trait Simd: Copy {
     fn div_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn min_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn max_d(self, a: Self::D, b: Self::D) -> Self::D;
+}
+
+/// A piece of the kernel that is compiled once for a token and called, not inlined, from wherever it is used.
+pub(crate) trait Apart<S> {
+    type Output;
+    fn run(self, s: S) -> Self::Output;
 }
 
 /// A piece of the kernel that runs on any instruction set.

@@ -3,7 +3,7 @@
 use core::arch::aarch64::*;
 
 use super::pair::Pair;
-use super::{Job, Simd};
+use super::{Apart, Job, Simd};
 
 #[derive(Clone, Copy)]
 pub(super) struct Neon(());
@@ -43,6 +43,11 @@ impl Simd for Neon {
     type I = int32x4_t;
     type M = uint32x4_t;
     type D = [float64x2_t; 2];
+
+    #[inline(never)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        job.run(self)
+    }
 
     #[inline(always)]
     fn f(self, x: f32) -> float32x4_t {

@@ -1,9 +1,21 @@
 //! Twice as many lanes: two vectors of a narrower instruction set side by side.
 
-use super::Simd;
+use super::{Apart, Simd};
 
 #[derive(Clone, Copy)]
 pub(super) struct Pair<S>(pub S);
+
+/// A job of the pair, as a job of the half.
+struct InPair<J>(J);
+
+impl<S: Simd, J: Apart<Pair<S>>> Apart<S> for InPair<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run(self, s: S) -> J::Output {
+        self.0.run(Pair(s))
+    }
+}
 
 macro_rules! pairwise {
     ($($name:ident($($a:ident: $t:ident),+) -> $r:ident;)*) => {$(
@@ -20,6 +32,11 @@ impl<S: Simd> Simd for Pair<S> {
     type I = [S::I; 2];
     type M = [S::M; 2];
     type D = [S::D; 2];
+
+    #[inline(always)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        self.0.apart(InPair(job))
+    }
 
     #[inline(always)]
     fn f(self, x: f32) -> Self::F {

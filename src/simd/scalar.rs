@@ -1,7 +1,7 @@
 //! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
 
 use super::pair::Pair;
-use super::{Job, Simd};
+use super::{Apart, Job, Simd};
 
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
@@ -79,6 +79,10 @@ impl Simd for Scalar4 {
     type I = [i32; 4];
     type M = [bool; 4];
     type D = [f64; 4];
+
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        job.run(self)
+    }
 
     #[inline(always)]
     fn f(self, x: f32) -> [f32; 4] {

@@ -4,7 +4,7 @@
 use core::arch::x86_64::*;
 
 use super::pair::Pair;
-use super::{Job, Simd};
+use super::{Apart, Job, Simd};
 
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(());
@@ -22,6 +22,14 @@ pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
 #[target_feature(enable = "sse4.1,ssse3")]
 pub(super) unsafe fn enter_sse41<J: Job>(job: J) -> J::Output {
     job.run(Pair(Sse41(())), Pair(Sse41(())))
+}
+
+/// # Safety
+/// The processor has SSSE3 and SSE4.1.
+#[target_feature(enable = "sse4.1,ssse3")]
+#[inline(never)]
+unsafe fn apart_sse41<J: Apart<Sse41>>(s: Sse41, job: J) -> J::Output {
+    job.run(s)
 }
 
 /// For each mask, the bytes of the lanes that it keeps, first to last.
@@ -356,6 +364,11 @@ macro_rules! shared {
 impl Simd for Sse2 {
     shared!();
 
+    #[inline(never)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        job.run(self)
+    }
+
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m128i) -> __m128 {
         // SAFETY: the token, and the caller's contract.
@@ -417,6 +430,12 @@ impl Simd for Sse2 {
 
 impl Simd for Sse41 {
     shared!();
+
+    #[inline(always)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        // SAFETY: the token proves the instruction set.
+        unsafe { apart_sse41(self, job) }
+    }
 
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m128i) -> __m128 {

@@ -4,7 +4,7 @@
 mod tile;
 mod wide;
 
-use super::Job;
+use super::{Apart, Job};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx512Tile(());
@@ -17,4 +17,12 @@ pub(super) struct Avx512Wide(());
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx512Tile(()), Avx512Wide(()))
+}
+
+/// # Safety
+/// As [`enter`].
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[inline(never)]
+unsafe fn apart<S, J: Apart<S>>(s: S, job: J) -> J::Output {
+    job.run(s)
 }

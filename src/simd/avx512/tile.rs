@@ -2,8 +2,8 @@
 
 use core::arch::x86_64::*;
 
-use super::Avx512Tile;
-use crate::simd::Simd;
+use super::{Avx512Tile, apart};
+use crate::simd::{Apart, Simd};
 
 impl Simd for Avx512Tile {
     const LANES: usize = 8;
@@ -11,6 +11,12 @@ impl Simd for Avx512Tile {
     type I = __m256i;
     type M = __mmask8;
     type D = __m512d;
+
+    #[inline(always)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        // SAFETY: the token proves the instruction set.
+        unsafe { apart(self, job) }
+    }
 
     #[inline(always)]
     fn f(self, x: f32) -> __m256 {

@@ -2,8 +2,8 @@
 
 use core::arch::x86_64::*;
 
-use super::Avx512Wide;
-use crate::simd::Simd;
+use super::{Avx512Wide, apart};
+use crate::simd::{Apart, Simd};
 
 impl Simd for Avx512Wide {
     const LANES: usize = 16;
@@ -11,6 +11,12 @@ impl Simd for Avx512Wide {
     type I = __m512i;
     type M = __mmask16;
     type D = [__m512d; 2];
+
+    #[inline(always)]
+    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+        // SAFETY: the token proves the instruction set.
+        unsafe { apart(self, job) }
+    }
 
     #[inline(always)]
     fn f(self, x: f32) -> __m512 {
