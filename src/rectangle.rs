@@ -42,12 +42,16 @@ pub(crate) fn test(
 
 /// The first and last of `size` pixels across [-1, 1] that an interval touches. One that ends on a
 /// pixel's boundary does not touch the pixel beyond. In f64 nothing is rounded but what is far below a pixel.
+#[inline(always)]
 fn touched(min: f32, max: f32, size: u32) -> (u32, u32) {
-    let pixel = |x: f32| (f64::from(x) * 0.5 + 0.5) * f64::from(size);
-    let limit = f64::from(size - 1);
-    let first = pixel(min).floor().clamp(0.0, limit);
-    let last = (pixel(max).ceil() - 1.0).clamp(first, limit);
-    (first as u32, last as u32)
+    let end = f64::from(size);
+    let pixel = |x: f32| ((f64::from(x) * 0.5 + 0.5) * end).clamp(0.0, end);
+    // Conversions to integers instead of `floor` and `ceil`, which the baseline of x86-64 has to call.
+    let first = (pixel(min) as u32).min(size - 1);
+    let max = pixel(max);
+    let whole = max as u32;
+    let last = if f64::from(whole) < max { whole } else { whole.saturating_sub(1) };
+    (first, last.max(first))
 }
 
 /// A rectangle of pixels, the last inside.

@@ -118,7 +118,11 @@ fn every_instruction_set_gives_the_golden_bits() {
             for (i, &implementation) in Implementation::available().iter().enumerate() {
                 let got = hashes(scene, implementation, rule);
                 if print && i == 0 {
-                    println!("[{:#018x}, {:#018x}, {:#018x}], // {} {rule:?}", got[0], got[1], got[2], scene.name);
+                    let row = got.map(|h| {
+                        let part = |shift: u32| (h >> shift) & 0xffff;
+                        format!("{:#06x}_{:04x}_{:04x}_{:04x}", part(48), part(32), part(16), part(0))
+                    });
+                    println!("        [{}], // {} {rule:?}", row.join(", "), scene.name);
                 }
                 for (part, what) in ["buffer", "answers", "statistics"].into_iter().enumerate() {
                     if got[part] != golden[part] {
@@ -153,6 +157,13 @@ fn every_instruction_set_agrees_after_every_object() {
                 .collect();
             let mut buffers = vec![vec![0.0f32; (w * h) as usize]; objects.len()];
             for (i, object) in scene.objects.iter().enumerate() {
+                let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
+                let answers = objects.iter().map(|moc| {
+                    let rectangle = moc.test_rect(x0, y0, x1, y1, nearest).unwrap();
+                    (rectangle, moc.test_triangles(vertices, object, &options).unwrap())
+                });
+                let answers: Vec<_> = answers.collect();
+                assert!(answers.iter().all(|a| *a == answers[0]), "{} {rule:?}, object {i}: {answers:?}", scene.name);
                 for (moc, depth) in objects.iter_mut().zip(&mut buffers) {
                     moc.render_triangles(vertices, object, &options).unwrap();
                     moc.compute_pixel_depth_buffer(depth, false).unwrap();
@@ -171,7 +182,13 @@ fn every_instruction_set_agrees_after_every_object() {
                             objects[0].implementation()
                         );
                     }
-                    assert_eq!(moc.statistics(), objects[0].statistics(), "{} {rule:?}, object {i}", scene.name);
+                    let who = moc.implementation();
+                    assert_eq!(
+                        moc.statistics(),
+                        objects[0].statistics(),
+                        "{} {rule:?} {who:?}, object {i}",
+                        scene.name
+                    );
                 }
             }
         }

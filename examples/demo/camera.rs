@@ -73,10 +73,12 @@ impl Camera {
         let mut places = Vec::new();
         for x in [0.1, 0.3, 0.5, 0.7, 0.9] {
             for z in [0.1, 0.3, 0.5, 0.7, 0.9] {
-                places.extend((0..8).map(|turn| {
-                    let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 8.0).sin_cos();
-                    (at(x, 0.2, z), at(x, 0.2, z) + (right * cos + ahead * sin) * size.length())
-                }));
+                for y in [0.2, 0.6] {
+                    places.extend((0..8).map(|turn| {
+                        let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 8.0).sin_cos();
+                        (at(x, y, z), at(x, y, z) + (right * cos + ahead * sin) * size.length())
+                    }));
+                }
             }
         }
         for (x, z) in [(-0.6, -0.6), (1.6, -0.6), (1.6, 1.6), (-0.6, 1.6)] {

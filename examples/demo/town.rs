@@ -19,9 +19,9 @@ const DEPTH: f32 = 10.0;
 /// Where the default camera stands and looks.
 pub fn camera() -> (Vec3, Vec3) {
     let street = PITCH / 2.0;
-    let stand = bend(vec2(street + 2.6, 0.87 * PITCH));
-    let ahead = bend(vec2(street - 17.0, 0.1 * PITCH));
-    (vec3(stand.x, 3.6, stand.y), vec3(ahead.x, 9.5, ahead.y))
+    let stand = bend(vec2(street + 2.0, 1.02 * PITCH));
+    let ahead = bend(vec2(street - 15.0, 0.1 * PITCH));
+    (vec3(stand.x, 3.6, stand.y), vec3(ahead.x, 11.0, ahead.y))
 }
 
 /// The town.

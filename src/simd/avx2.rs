@@ -110,6 +110,25 @@ impl Simd for Avx2 {
         }
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [__m256; 4] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            // Vertices k and k + 4 in the halves of one register.
+            let a = _mm256_set_m128(_mm_loadu_ps(p.add(16)), _mm_loadu_ps(p));
+            let b = _mm256_set_m128(_mm_loadu_ps(p.add(20)), _mm_loadu_ps(p.add(4)));
+            let c = _mm256_set_m128(_mm_loadu_ps(p.add(24)), _mm_loadu_ps(p.add(8)));
+            let d = _mm256_set_m128(_mm_loadu_ps(p.add(28)), _mm_loadu_ps(p.add(12)));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ]
+        }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m256, x: __m256i) -> usize {
         // SAFETY: the token, and the caller's contract; the mask has eight bits.
         unsafe {

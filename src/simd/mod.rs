@@ -70,6 +70,10 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// `p` can be read for `3 * LANES` indices.
     unsafe fn load_triangles(self, p: *const u32) -> [Self::I; 3];
+    /// `LANES` packed groups of four floats: the first of each, the second of each, and so on.
+    /// # Safety
+    /// `p` can be read for `4 * LANES` floats; any alignment.
+    unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4];
     /// Writes the lanes in `m` to `p` without gaps and returns their number.
     /// # Safety
     /// `p` can be written for `LANES` values, whatever the mask.
@@ -176,7 +180,13 @@ pub(crate) fn available() -> &'static [Implementation] {
     {
         const ALL: [Implementation; 5] = [Scalar, Sse2, Sse41, Avx2, Avx512];
         let sse41 = is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3");
-        let avx2 = sse41 && is_x86_feature_detected!("avx2");
+        // Every processor with AVX2 has these, but a virtual machine may hide them.
+        let avx2 = sse41
+            && is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
         let avx512 = avx2
             && is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512bw")

@@ -119,6 +119,12 @@ impl Simd for Neon {
         }
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [float32x4_t; 4] {
+        // SAFETY: the token, and the caller's contract.
+        let v = unsafe { vld4q_f32(p) };
+        [v.0, v.1, v.2, v.3]
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: uint32x4_t, x: int32x4_t) -> usize {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -90,6 +90,12 @@ impl<S: Simd> Simd for Pair<S> {
         [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]]]
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4] {
+        // SAFETY: the caller's contract, half by half.
+        let (a, b) = unsafe { (self.0.load_quads(p), self.0.load_quads(p.add(4 * S::LANES))) };
+        [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]], [a[3], b[3]]]
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: Self::M, x: Self::I) -> usize {
         // SAFETY: the caller's contract; the second half starts at most LANES / 2 after `p`.
         unsafe {

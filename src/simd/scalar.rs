@@ -135,6 +135,13 @@ impl Simd for Scalar4 {
         [[t[0], t[3], t[6], t[9]], [t[1], t[4], t[7], t[10]], [t[2], t[5], t[8], t[11]]]
     }
     #[inline(always)]
+    unsafe fn load_quads(self, p: *const f32) -> [[f32; 4]; 4] {
+        // SAFETY: the caller's contract.
+        let v = unsafe { p.cast::<[[f32; 4]; 4]>().read_unaligned() };
+        let k = [0, 1, 2, 3];
+        lanes!(k => [v[0][k], v[1][k], v[2][k], v[3][k]])
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: [bool; 4], x: [i32; 4]) -> usize {
         let mut n = 0;
         for lane in 0..4 {

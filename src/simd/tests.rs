@@ -91,6 +91,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             results.push(floats(s.load_strided(far.as_ptr().cast::<u8>().add(8 * first), 8)));
             let triangles: Vec<u32> = (0..3 * N as u32).collect();
             results.extend(s.load_triangles(triangles.as_ptr().add(3 * first)).map(lanes));
+            results.extend(s.load_quads(far.as_ptr().add(4 * first)).map(floats));
             let mut packed = [0; N];
             let n = s.compress(packed.as_mut_ptr(), m, i);
             kept.extend_from_slice(&packed[..n]);
