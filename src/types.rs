@@ -199,7 +199,7 @@ pub struct OccluderStatistics {
     pub num_processed_triangles: i64,
     /// Those that face the eye, lie in view and hold a pixel centre.
     pub num_rasterized_triangles: i64,
-    /// 32x8 tiles that such triangles reach and that were not nearer already.
+    /// 32x8 tiles in the bounding boxes of such triangles.
     pub num_tiles_traversed: i64,
     /// Tiles in which a triangle changed, or could have changed, a sub-tile.
     pub num_tiles_updated: i64,

@@ -47,8 +47,10 @@ impl Rule for ThreeLayer {
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near, z_far, near, far } = *planes;
         let live = live(s, z0, c, depth);
-        // A lane that is not live inserts at the reference depth, which changes nothing.
-        let t = s.select(live, depth, z0);
+        // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the
+        // reference. Nothing here waits for `live`: triangles that follow each other often meet in the same tile,
+        // and the next one waits for what this one stores.
+        let t = s.select(s.eq_i(c, s.i(0)), s.f(-1.0), depth);
         let nearer_than_near = s.lt(z_near, t);
         let nearer_than_far = s.lt(z_far, t);
         // Three candidate layers and their pixels, nearest first.

@@ -85,10 +85,10 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, clip: last.clip(buffer) };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
-    let mut in_view = false;
+    let (mut in_view, mut unprojectable) = (false, false);
     let (mut position, mut chunk_end, mut numbering) = (0, 0, Numbering::From(0));
 
     while position < triangles {
@@ -129,7 +129,10 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
                         match polygon {
                             Clipped::Nothing => {}
                             Clipped::Dropped => tally.dropped += 1,
-                            Clipped::Unprojectable => return (CullingResult::Visible, tally),
+                            Clipped::Unprojectable => {
+                                unprojectable = true;
+                                break;
+                            }
                             Clipped::Polygon(polygon) => {
                                 in_view |=
                                     polygon.emit(L::PURPOSE, camera, facing, scratch, &mut survivors, &mut clipped);
@@ -139,6 +142,9 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
                 }
             }
             position += count;
+            if unprojectable {
+                break;
+            }
         }
 
         scratch.pad(survivors);
@@ -150,11 +156,14 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
                 let first = scratch.survivors.as_ptr().add(done).cast();
                 set_up(setup, scratch, first, n, &mut batch)
             };
-            tally.rasterized += u64::from(alive.rasterized.count_ones());
-            if alive.lanes != 0 && !last.take(&batch, alive.lanes, &mut tally) {
+            if alive.rasterized != 0 && !last.take(&batch, &alive, &mut tally) {
                 return (CullingResult::Visible, tally);
             }
             done += n;
+        }
+        // What comes before it in the mesh was compared first, so that the counts do not depend on the lanes.
+        if unprojectable {
+            return (CullingResult::Visible, tally);
         }
     }
     let result = match (in_view, L::PURPOSE) {

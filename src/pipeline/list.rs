@@ -20,7 +20,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, clip: last.clip(buffer) };
     let mut tally = Tally::default();
     let mut position = 0;
     while position < list.len() {
@@ -36,9 +36,8 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
                 let first = scratch.survivors.as_ptr().add(done).cast();
                 set_up(setup, scratch, first, n, &mut batch)
             };
-            tally.rasterized += u64::from(alive.rasterized.count_ones());
-            if alive.lanes != 0 {
-                last.take(&batch, alive.lanes, &mut tally);
+            if alive.rasterized != 0 {
+                last.take(&batch, &alive, &mut tally);
             }
             done += n;
         }

@@ -21,7 +21,7 @@
 use super::Facing;
 use super::edges;
 use super::scratch::{LOCAL_BITS, MAX_LANES, Scratch};
-use crate::buffer::Buffer;
+use crate::buffer::{Buffer, TileRect};
 use crate::simd::Simd;
 
 /// Beyond this, in 1/256 pixel, edges are set up one by one.
@@ -109,11 +109,18 @@ pub(super) enum Purpose {
 type Corner<S> = [<S as Simd>::F; 3];
 
 /// What setup found, a bit a lane.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Alive {
-    /// Triangles that reach the last step.
-    pub lanes: u32,
-    /// Those, and the ones that are hidden by what was drawn.
+    /// Triangles that face the eye and whose box holds a pixel; the others are nothing.
     pub rasterized: u32,
+    /// Those that reach the last step.
+    pub lanes: u32,
+    /// Of these, the ones that reach more than two tiles across or down.
+    pub large: u32,
+    /// Of the small ones, whether the box has its upper left, upper right, lower left and lower right tile.
+    pub boxes: [u32; 4],
+    /// Whether in that tile something may be nearer than what was drawn.
+    pub open: [u32; 4],
 }
 
 /// How a call's triangles are set up.
@@ -123,6 +130,8 @@ pub(super) struct Setup<'a, S> {
     pub purpose: Purpose,
     pub buffer: &'a Buffer,
     pub facing: Facing,
+    /// Only tiles inside of it count.
+    pub clip: TileRect,
 }
 
 /// Sets up the first `n` of the survivors at `survivors`.
@@ -138,7 +147,7 @@ pub(super) unsafe fn set_up<S: Simd>(
     n: usize,
     batch: &mut Batch,
 ) -> Alive {
-    let Setup { s, purpose, buffer, facing } = setup;
+    let Setup { s, purpose, buffer, facing, clip } = setup;
     let query = purpose == Purpose::Query;
     // SAFETY: the caller's contract.
     let packed = unsafe { s.load_i(survivors) };
@@ -210,6 +219,7 @@ pub(super) unsafe fn set_up<S: Simd>(
         // In f64 the sign of the area of so wide a triangle may be off.
         let drawable = s.mask_bits(s.and_m(active, inside));
         lanes = edges::correct_facing(batch, lanes, wide & drawable);
+        alive = s.and_m(active, inside);
     }
     let rasterized = lanes;
     store!(i tile_x0, tile_x0);
@@ -217,26 +227,45 @@ pub(super) unsafe fn set_up<S: Simd>(
     store!(i tile_y0, tile_y0);
     store!(i tile_y1, tile_y1);
     if purpose == Purpose::Bin || lanes == 0 {
-        return Alive { lanes, rasterized };
+        return Alive { rasterized, lanes, ..Alive::default() };
     }
 
-    // Hidden by all of the one to four tiles that it reaches: not worth setting up.
+    // Of a triangle that reaches one to four tiles, the tiles that are nearer already are done with.
     let nearest = s.max(v0[2], s.max(v1[2], v2[2]));
     let farthest = s.min(v0[2], s.min(v1[2], v2[2]));
     let nearest = s.mul(nearest, s.f(1.0 + VERTEX_MARGIN));
-    let few = s
-        .and_not_m(s.or_m(s.gt_i(s.sub_i(tile_x1, tile_x0), s.i(1)), s.gt_i(s.sub_i(tile_y1, tile_y0), s.i(1))), alive);
-    if s.mask_bits(few) != 0 {
-        // SAFETY: lanes of `few` name tiles inside of the buffer, the others name the first.
+    let (across, down) = (s.sub_i(tile_x1, tile_x0), s.sub_i(tile_y1, tile_y0));
+    let large = lanes & s.mask_bits(s.or_m(s.gt_i(across, s.i(1)), s.gt_i(down, s.i(1))));
+    let small = lanes & !large;
+    let mut boxes = [0; 4];
+    let mut open = [0; 4];
+    if small != 0 {
+        let two_across = s.mask_bits(s.gt_i(across, s.i(0)));
+        let two_down = s.mask_bits(s.gt_i(down, s.i(0)));
+        let left = small & within(s, tile_x0, clip.x0, clip.x1);
+        let right = small & two_across & within(s, tile_x1, clip.x0, clip.x1);
+        let upper = within(s, tile_y0, clip.y0, clip.y1);
+        let lower = two_down & within(s, tile_y1, clip.y0, clip.y1);
+        boxes = [left & upper, right & upper, left & lower, right & lower];
+        // Lanes of large triangles look up tiles too: they are inside of the buffer, as all that is alive.
+        let hidden = |least: S::F| s.mask_bits(if query { s.lt(nearest, least) } else { s.le(nearest, least) });
+        // SAFETY: lanes that are alive name tiles of the buffer, the others name the first.
         let least = unsafe {
-            let upper = s.min(least_at(s, buffer, few, tile_x0, tile_y0), least_at(s, buffer, few, tile_x1, tile_y0));
-            s.min(upper, s.min(least_at(s, buffer, few, tile_x0, tile_y1), least_at(s, buffer, few, tile_x1, tile_y1)))
+            [
+                least_at(s, buffer, alive, tile_x0, tile_y0),
+                least_at(s, buffer, alive, tile_x1, tile_y0),
+                least_at(s, buffer, alive, tile_x0, tile_y1),
+                least_at(s, buffer, alive, tile_x1, tile_y1),
+            ]
         };
-        let hidden = if query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        lanes &= !s.mask_bits(s.and_m(few, hidden));
-        if lanes == 0 {
-            return Alive { lanes, rasterized };
+        for k in 0..4 {
+            open[k] = boxes[k] & !hidden(least[k]);
         }
+    }
+    lanes = large | open[0] | open[1] | open[2] | open[3];
+    let found = Alive { rasterized, lanes, large, boxes, open };
+    if lanes == 0 {
+        return found;
     }
 
     // Edges.
@@ -299,7 +328,7 @@ pub(super) unsafe fn set_up<S: Simd>(
     store!(z_down, if query { s.select(flat, zero, down_sub) } else { down_sub });
     store!(z_clamp, if query { nearest } else { s.mul(farthest, s.f(1.0 - VERTEX_MARGIN)) });
     store!(nearest, nearest);
-    Alive { lanes, rasterized }
+    found
 }
 
 /// # Safety
@@ -353,6 +382,12 @@ fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z:
         s.select(second, y[1], s.select(third, z[1], x[1])),
         s.select(second, y[2], s.select(third, z[2], x[2])),
     ]
+}
+
+/// Lanes from `first` to before `end`.
+#[inline(always)]
+fn within<S: Simd>(s: S, x: S::I, first: u32, end: u32) -> u32 {
+    s.mask_bits(s.and_m(s.gt_i(x, s.i(first as i32 - 1)), s.gt_i(s.i(end as i32), x)))
 }
 
 /// The least depth of tile (x, y); of the first tile for lanes that are not in `m`.

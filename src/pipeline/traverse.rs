@@ -7,7 +7,7 @@
 use core::marker::PhantomData;
 
 use super::edges::bits;
-use super::setup::{Batch, Purpose};
+use super::setup::{Alive, Batch, Purpose};
 use crate::bins::TriList;
 use crate::buffer::{Buffer, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect, UNTOUCHED, fresh};
 use crate::simd::Simd;
@@ -17,8 +17,13 @@ use crate::statistics::Tally;
 pub(super) trait LastStep {
     const PURPOSE: Purpose;
 
-    /// Takes the triangles in `lanes`, in order. False: no more are needed.
-    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool;
+    /// The tiles that count.
+    fn clip(&self, buffer: &Buffer) -> TileRect {
+        buffer.all_tiles()
+    }
+
+    /// Takes the triangles that are alive, in order. False: no more are needed.
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool;
 }
 
 /// The events of one strip of tiles: for each of eight rows the first pixel inside and the first beyond.
@@ -30,24 +35,10 @@ struct Strip<T: Simd> {
 impl<T: Simd> Strip<T> {
     #[inline(always)]
     fn new(t: T, batch: &Batch, lane: usize, tile_y: u32, width: f64) -> Self {
-        let first_row = (tile_y * TILE_HEIGHT) as i32;
-        let rows = t.add_i(t.i(first_row), t.iota());
-        let row = t.to_d(t.to_f(rows));
-        let event = |at: f64, slope: f64| t.add_d(t.d(at), t.mul_d(t.d(slope), row));
-        let along_middle = t.mul_d(t.d(batch.middle_slope[lane]), row);
-        let left = t.max_d(
-            event(batch.left[lane], batch.left_slope[lane]),
-            t.add_d(t.d(batch.middle_left[lane]), along_middle),
-        );
-        let right = t.min_d(
-            event(batch.right[lane], batch.right_slope[lane]),
-            t.add_d(t.d(batch.middle_right[lane]), along_middle),
-        );
+        let rows = t.add_i(t.i((tile_y * TILE_HEIGHT) as i32), t.iota());
+        let [left, right] = events(t, batch, lane, rows);
         let clamp = |x: T::D| t.d_to_i(t.min_d(t.max_d(x, t.d(0.0)), t.d(width)));
-        // Rows above the first and below the last have no pixels.
-        let inside =
-            t.and_m(t.gt_i(rows, t.i(batch.row0[lane] as i32 - 1)), t.gt_i(t.i(batch.row1[lane] as i32), rows));
-        Self { left: clamp(left), right: t.select_i(inside, clamp(right), t.i(0)) }
+        Self { left: clamp(left), right: t.select_i(rows_inside(t, batch, lane, rows), clamp(right), t.i(0)) }
     }
 
     /// The pixels of a tile, a sub-tile a lane.
@@ -69,6 +60,25 @@ impl<T: Simd> Strip<T> {
     }
 }
 
+/// The left and the right events of eight rows, before they are rounded down.
+#[inline(always)]
+fn events<T: Simd>(t: T, batch: &Batch, lane: usize, rows: T::I) -> [T::D; 2] {
+    let row = t.to_d(t.to_f(rows));
+    let left = t.add_d(t.d(batch.left[lane]), t.mul_d(t.d(batch.left_slope[lane]), row));
+    let right = t.add_d(t.d(batch.right[lane]), t.mul_d(t.d(batch.right_slope[lane]), row));
+    let middle = t.mul_d(t.d(batch.middle_slope[lane]), row);
+    [
+        t.max_d(left, t.add_d(t.d(batch.middle_left[lane]), middle)),
+        t.min_d(right, t.add_d(t.d(batch.middle_right[lane]), middle)),
+    ]
+}
+
+/// Rows from the triangle's first to its last; the others have no pixels, whatever their events.
+#[inline(always)]
+fn rows_inside<T: Simd>(t: T, batch: &Batch, lane: usize, rows: T::I) -> T::M {
+    t.and_m(t.gt_i(rows, t.i(batch.row0[lane] as i32 - 1)), t.gt_i(t.i(batch.row1[lane] as i32), rows))
+}
+
 /// Calls `visit(tile x, tile y, coverage, depth)` for each tile of a triangle inside of `clip` whose least
 /// depth `hidden` does not refuse.
 ///
@@ -81,17 +91,22 @@ macro_rules! for_each_tile {
         let (z, across, down) = ($t.f($batch.z[$lane]), $t.f($batch.z_across[$lane]), $t.f($batch.z_down[$lane]));
         let column = $t.and($t.iota(), $t.i(3));
         let half = $t.sra::<2>($t.iota());
-        for $y in y0.max(clip.y0)..=y1.min(clip.y1.wrapping_sub(1)) {
+        let mut next_row = y0.max(clip.y0);
+        while next_row <= y1 && next_row < clip.y1 {
+            let $y = next_row;
+            next_row += 1;
             let strip = Strip::new($t, $batch, $lane, $y, $buffer.tiles_w() as f64 * TILE_WIDTH as f64);
             let (mut first, mut last) = (x0.max(clip.x0) as i32, x1.min(clip.x1.wrapping_sub(1)) as i32);
-            if x1 - x0 >= 2 {
+            if x1 - x0 >= 4 {
                 let (reach_first, reach_last) = strip.reach($t);
                 (first, last) = (first.max(reach_first), last.min(reach_last));
             }
             let sub_row = $t.add_i($t.i(2 * ($y - y0) as i32), half);
             let z_row = $t.add(z, $t.mul(down, $t.to_f(sub_row)));
-            for $x in first..=last {
-                let $x = $x as u32;
+            let mut next = first;
+            while next <= last {
+                let $x = next as u32;
+                next += 1;
                 let $index = ($y * $buffer.tiles_w() + $x) as usize;
                 // SAFETY: tiles of a triangle's box are tiles of the buffer.
                 let $least = unsafe { $buffer.least().add($index) };
@@ -119,45 +134,122 @@ impl<'a, T: Simd, R: Rule> Draw<'a, T, R> {
     }
 }
 
+impl<T: Simd, R: Rule> Draw<'_, T, R> {
+    /// Takes what a triangle covers of a tile into the buffer. `least` is the tile's least depth.
+    ///
+    /// # Safety
+    /// `index` is tile (x, y) of the buffer, and nobody else uses it.
+    #[inline(always)]
+    unsafe fn update(&self, index: usize, [x, y]: [u32; 2], mut covered: T::I, depth: T::F, tally: &mut Tally) {
+        let (t, buffer) = (self.t, self.buffer);
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        let inserted = unsafe {
+            let least = buffer.least().add(index);
+            let tile = buffer.tile(index);
+            let border = buffer.border(x, y);
+            if let Some(outside) = border {
+                let outside = t.load_i(outside.as_ptr());
+                let nothing = t.eq_i(t.and_not(outside, covered), t.i(0));
+                covered = t.select_i(nothing, t.i(0), t.or(covered, outside));
+            }
+            let mut planes = if *least == UNTOUCHED { fresh::<T, R>(t, border) } else { R::load(t, tile) };
+            let inserted = R::insert(t, &mut planes, covered, depth);
+            R::store(t, tile, &planes);
+            *least = t.least(planes.z0);
+            inserted
+        };
+        tally.updated += u64::from(t.mask_bits(inserted.live) != 0);
+        tally.merged += u64::from(t.mask_bits(inserted.merged) != 0);
+    }
+
+    /// One tile of a small triangle, of four: the second column or row where `right` or `low` is 1.
+    #[inline(always)]
+    fn small(&self, batch: &Batch, lane: usize, right: u32, low: u32, tally: &mut Tally) {
+        let t = self.t;
+        let (x, y) = (batch.tile_x0[lane] + right, batch.tile_y0[lane] + low);
+        let index = (y * self.buffer.tiles_w() + x) as usize;
+        let first_row = (y * TILE_HEIGHT) as i32;
+        let rows = t.add_i(t.i(first_row), t.iota());
+        let [left, right_events] = events(t, batch, lane, rows);
+        let from = t.d(f64::from(x * TILE_WIDTH));
+        let within = |e: T::D| t.d_to_i(t.min_d(t.max_d(t.sub_d(e, from), t.d(0.0)), t.d(f64::from(TILE_WIDTH))));
+        let (first, end) = (within(left), within(right_events));
+        let end = t.select_i(rows_inside(t, batch, lane, rows), end, t.i(0));
+        let covered = t.transpose_bytes(t.and_not(t.ones_shl(end), t.ones_shl(first)));
+        let sub_column = t.add_i(t.i(4 * right as i32), t.and(t.iota(), t.i(3)));
+        let sub_row = t.add_i(t.i(2 * low as i32), t.sra::<2>(t.iota()));
+        let z_row = t.add(t.f(batch.z[lane]), t.mul(t.f(batch.z_down[lane]), t.to_f(sub_row)));
+        let plane = t.add(z_row, t.mul(t.f(batch.z_across[lane]), t.to_f(sub_column)));
+        let depth = t.max(plane, t.f(batch.z_clamp[lane]));
+        // SAFETY: a tile of the triangle's box is a tile of the buffer, which the caller of the pipeline keeps to this call.
+        unsafe { self.update(index, [x, y], covered, depth, tally) }
+    }
+}
+
 impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
     const PURPOSE: Purpose = Purpose::Draw;
 
     #[inline(always)]
-    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool {
+    fn clip(&self, _: &Buffer) -> TileRect {
+        self.clip
+    }
+
+    #[inline(always)]
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         let (t, buffer) = (self.t, self.buffer);
-        for lane in bits(lanes) {
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
+        tally.traversed += alive.boxes.iter().map(|b| u64::from(b.count_ones())).sum::<u64>();
+        // One bit a tile, four a triangle, in the triangles' order: a loop over them is predicted well.
+        let mut tiles = interleave(alive.open);
+        let mut large = alive.large;
+        loop {
+            let lane = large.trailing_zeros() as usize;
+            let before = if large == 0 { u64::MAX } else { (1 << (4 * lane)) - 1 };
+            let mut now = tiles & before;
+            tiles &= !before;
+            while now != 0 {
+                let tile = now.trailing_zeros();
+                now &= now - 1;
+                self.small(batch, tile as usize / 4, tile & 1, tile >> 1 & 1, tally);
+            }
+            if large == 0 {
+                return true;
+            }
+            large &= large - 1;
             let nearest = batch.nearest[lane];
+            tally.traversed += tiles_in(batch, lane, self.clip);
             for_each_tile!(t, buffer, self.clip, batch, lane, |x, y, index, least, coverage, plane| {
                 // SAFETY: a tile of the buffer, which the caller of the pipeline keeps to this call.
-                let before = unsafe { *least };
-                if nearest <= before {
-                    continue;
+                unsafe {
+                    if nearest > *least {
+                        let depth = t.max(plane, t.f(batch.z_clamp[lane]));
+                        self.update(index, [x, y], coverage(), depth, tally);
+                    }
                 }
-                let mut covered = coverage();
-                let border = buffer.border(x, y);
-                if let Some(outside) = border {
-                    // SAFETY: eight words.
-                    let outside = unsafe { t.load_i(outside.as_ptr()) };
-                    let nothing = t.eq_i(t.and_not(outside, covered), t.i(0));
-                    covered = t.select_i(nothing, t.i(0), t.or(covered, outside));
-                }
-                let depth = t.max(plane, t.f(batch.z_clamp[lane]));
-                // SAFETY: as above; the buffer was made for the rule `R`.
-                let inserted = unsafe {
-                    let tile = buffer.tile(index);
-                    let mut planes = if before == UNTOUCHED { fresh::<T, R>(t, border) } else { R::load(t, tile) };
-                    let inserted = R::insert(t, &mut planes, covered, depth);
-                    R::store(t, tile, &planes);
-                    *least = t.least(planes.z0);
-                    inserted
-                };
-                tally.traversed += 1;
-                tally.updated += u64::from(t.mask_bits(inserted.live) != 0);
-                tally.merged += u64::from(t.mask_bits(inserted.merged) != 0);
             });
         }
-        true
     }
+}
+
+/// Tiles of a triangle's box inside of a rectangle.
+#[inline(always)]
+fn tiles_in(batch: &Batch, lane: usize, clip: TileRect) -> u64 {
+    let wide = (batch.tile_x1[lane] + 1).min(clip.x1).saturating_sub(batch.tile_x0[lane].max(clip.x0));
+    let high = (batch.tile_y1[lane] + 1).min(clip.y1).saturating_sub(batch.tile_y0[lane].max(clip.y0));
+    u64::from(wide) * u64::from(high)
+}
+
+/// Sixteen bits of four masks each, bit by bit: bit `4 * lane + k` is bit `lane` of mask `k`.
+#[inline(always)]
+fn interleave(masks: [u32; 4]) -> u64 {
+    let spread = |mask: u32| {
+        let mut x = u64::from(mask);
+        x = (x | x << 24) & 0x0000_00ff_0000_00ff;
+        x = (x | x << 12) & 0x000f_000f_000f_000f;
+        x = (x | x << 6) & 0x0303_0303_0303_0303;
+        (x | x << 3) & 0x1111_1111_1111_1111
+    };
+    spread(masks[0]) | spread(masks[1]) << 1 | spread(masks[2]) << 2 | spread(masks[3]) << 3
 }
 
 /// Compares with a buffer until something may be seen.
@@ -178,9 +270,9 @@ impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
     const PURPOSE: Purpose = Purpose::Query;
 
     #[inline(always)]
-    fn take(&mut self, batch: &Batch, lanes: u32, tally: &mut Tally) -> bool {
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         let (t, buffer) = (self.t, self.buffer);
-        for lane in bits(lanes) {
+        for lane in bits(alive.lanes) {
             let nearest = batch.nearest[lane];
             let columns = (t.i(batch.column0[lane] as i32), t.i(batch.column1[lane] as i32));
             for_each_tile!(t, buffer, buffer.all_tiles(), batch, lane, |x, y, index, least, coverage, plane| {
@@ -206,10 +298,12 @@ impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
                     t.mask_bits(R::hides(t, &planes, touched, depth)) != 0xff
                 };
                 if visible {
+                    tally.rasterized += u64::from((alive.rasterized & ((2 << lane) - 1)).count_ones());
                     return false;
                 }
             });
         }
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
         true
     }
 }
@@ -233,9 +327,10 @@ impl LastStep for Bins<'_, '_> {
     const PURPOSE: Purpose = Purpose::Bin;
 
     #[inline(always)]
-    fn take(&mut self, batch: &Batch, lanes: u32, _: &mut Tally) -> bool {
+    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
         let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
-        for lane in bits(lanes) {
+        for lane in bits(alive.lanes) {
             let triangle = core::array::from_fn(|k| batch.corners[k][lane]);
             // The last bin takes what division leaves over.
             let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
