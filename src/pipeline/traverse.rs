@@ -50,13 +50,19 @@ impl<T: Simd> Strip<T> {
         t.transpose_bytes(t.and_not(t.ones_shl(right), t.ones_shl(left)))
     }
 
-    /// The tiles from the first to the last that any row reaches; the last is before the first where none does.
+    /// Of 64 tiles from `start` on, those from the first to the last that any row reaches.
     #[inline(always)]
-    fn reach(&self, t: T) -> (i32, i32) {
+    fn reach(&self, t: T, start: u32) -> u64 {
         let empty = t.gt_i(t.add_i(self.left, t.i(1)), self.right);
         let first = t.least(t.select(empty, t.f(f32::MAX), t.to_f(self.left)));
-        let last = -t.least(t.select(empty, t.f(0.0), t.sub(t.f(0.0), t.to_f(self.right))));
-        if last <= 0.0 { (0, -1) } else { (first as i32 / TILE_WIDTH as i32, (last as i32 - 1) / TILE_WIDTH as i32) }
+        let end = -t.least(t.select(empty, t.f(0.0), t.sub(t.f(0.0), t.to_f(self.right))));
+        // To tiles, the end rounded up; MAX saturates.
+        let (first, end) = (first as u32 / TILE_WIDTH, (end as u32).div_ceil(TILE_WIDTH));
+        let below = |tile: u32| match tile.saturating_sub(start) {
+            n @ 0..64 => (1 << n) - 1,
+            _ => u64::MAX,
+        };
+        below(end) & !below(first)
     }
 }
 
@@ -79,41 +85,54 @@ fn rows_inside<T: Simd>(t: T, batch: &Batch, lane: usize, rows: T::I) -> T::M {
     t.and_m(t.gt_i(rows, t.i(batch.row0[lane] as i32 - 1)), t.gt_i(t.i(batch.row1[lane] as i32), rows))
 }
 
-/// Calls `visit(tile x, tile y, coverage, depth)` for each tile of a triangle inside of `clip` whose least
-/// depth `hidden` does not refuse.
+/// Visits each tile of a triangle inside of `clip` whose least depth is `open`, strip by strip.
 ///
-/// A macro, since a closure that is called from two places is not inlined.
+/// The tiles of a strip are compared with the triangle's nearest depth eight at a time, so that what is hidden
+/// costs no branch of its own. A macro, since a closure that is called from two places is not inlined.
 macro_rules! for_each_tile {
-    ($t:ident, $buffer:expr, $clip:expr, $batch:ident, $lane:ident, |$x:ident, $y:ident, $index:ident, $least:ident, $coverage:ident, $plane:ident| $visit:block) => {{
+    ($t:ident, $buffer:expr, $clip:expr, $batch:ident, $lane:ident, |$least:ident| $open:expr,
+        |$x:ident, $y:ident, $index:ident, $strip:ident, $plane:ident| $visit:block) => {{
         let clip: TileRect = $clip;
         let (x0, x1) = ($batch.tile_x0[$lane], $batch.tile_x1[$lane]);
         let (y0, y1) = ($batch.tile_y0[$lane], $batch.tile_y1[$lane]);
         let (z, across, down) = ($t.f($batch.z[$lane]), $t.f($batch.z_across[$lane]), $t.f($batch.z_down[$lane]));
         let column = $t.and($t.iota(), $t.i(3));
         let half = $t.sra::<2>($t.iota());
+        let (begin, end) = (x0.max(clip.x0), (x1 + 1).min(clip.x1));
         let mut next_row = y0.max(clip.y0);
         while next_row <= y1 && next_row < clip.y1 {
             let $y = next_row;
             next_row += 1;
-            let strip = Strip::new($t, $batch, $lane, $y, $buffer.tiles_w() as f64 * TILE_WIDTH as f64);
-            let (mut first, mut last) = (x0.max(clip.x0) as i32, x1.min(clip.x1.wrapping_sub(1)) as i32);
-            if x1 - x0 >= 4 {
-                let (reach_first, reach_last) = strip.reach($t);
-                (first, last) = (first.max(reach_first), last.min(reach_last));
-            }
-            let sub_row = $t.add_i($t.i(2 * ($y - y0) as i32), half);
-            let z_row = $t.add(z, $t.mul(down, $t.to_f(sub_row)));
-            let mut next = first;
-            while next <= last {
-                let $x = next as u32;
-                next += 1;
-                let $index = ($y * $buffer.tiles_w() + $x) as usize;
-                // SAFETY: tiles of a triangle's box are tiles of the buffer.
-                let $least = unsafe { $buffer.least().add($index) };
-                let sub_column = $t.add_i($t.i(4 * ($x - x0) as i32), column);
-                let $plane = $t.add(z_row, $t.mul(across, $t.to_f(sub_column)));
-                let $coverage = || strip.coverage($t, $x);
-                $visit
+            let row = ($y * $buffer.tiles_w()) as usize;
+            let mut start = begin;
+            while start < end {
+                let count = (end - start).min(64);
+                let mut tiles = 0_u64;
+                let mut k = 0;
+                while k < count {
+                    // SAFETY: tiles of a triangle's box are tiles of the buffer; after the last there is room for a vector.
+                    let $least = unsafe { $t.load_f($buffer.least().add(row + (start + k) as usize)) };
+                    tiles |= u64::from($t.mask_bits($open)) << k;
+                    k += SUB_TILES as u32;
+                }
+                tiles &= u64::MAX >> (64 - count);
+                if tiles != 0 {
+                    let $strip = Strip::new($t, $batch, $lane, $y, $buffer.tiles_w() as f64 * TILE_WIDTH as f64);
+                    if count > 4 {
+                        tiles &= $strip.reach($t, start);
+                    }
+                    let sub_row = $t.add_i($t.i(2 * ($y - y0) as i32), half);
+                    let z_row = $t.add(z, $t.mul(down, $t.to_f(sub_row)));
+                    while tiles != 0 {
+                        let $x = start + tiles.trailing_zeros();
+                        tiles &= tiles - 1;
+                        let $index = row + $x as usize;
+                        let sub_column = $t.add_i($t.i(4 * ($x - x0) as i32), column);
+                        let $plane = $t.add(z_row, $t.mul(across, $t.to_f(sub_column)));
+                        $visit
+                    }
+                }
+                start += count;
             }
         }
     }};
@@ -216,17 +235,21 @@ impl<T: Simd, R: Rule> LastStep for Draw<'_, T, R> {
                 return true;
             }
             large &= large - 1;
-            let nearest = batch.nearest[lane];
+            let nearest = t.f(batch.nearest[lane]);
             tally.traversed += tiles_in(batch, lane, self.clip);
-            for_each_tile!(t, buffer, self.clip, batch, lane, |x, y, index, least, coverage, plane| {
-                // SAFETY: a tile of the buffer, which the caller of the pipeline keeps to this call.
-                unsafe {
-                    if nearest > *least {
-                        let depth = t.max(plane, t.f(batch.z_clamp[lane]));
-                        self.update(index, [x, y], coverage(), depth, tally);
-                    }
+            for_each_tile!(
+                t,
+                buffer,
+                self.clip,
+                batch,
+                lane,
+                |least| t.lt(least, nearest),
+                |x, y, index, strip, plane| {
+                    let depth = t.max(plane, t.f(batch.z_clamp[lane]));
+                    // SAFETY: a tile of the buffer, which the caller of the pipeline keeps to this call.
+                    unsafe { self.update(index, [x, y], strip.coverage(t, x), depth, tally) }
                 }
-            });
+            );
         }
     }
 }
@@ -273,35 +296,39 @@ impl<T: Simd, R: Rule> LastStep for Query<'_, T, R> {
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         let (t, buffer) = (self.t, self.buffer);
         for lane in bits(alive.lanes) {
-            let nearest = batch.nearest[lane];
+            let nearest = t.f(batch.nearest[lane]);
             let columns = (t.i(batch.column0[lane] as i32), t.i(batch.column1[lane] as i32));
-            for_each_tile!(t, buffer, buffer.all_tiles(), batch, lane, |x, y, index, least, coverage, plane| {
-                // SAFETY: a tile of the buffer, into which nobody draws.
-                let least = unsafe { *least };
-                if nearest < least {
-                    continue;
+            let open = |least: T::F| t.le(least, nearest);
+            for_each_tile!(
+                t,
+                buffer,
+                buffer.all_tiles(),
+                batch,
+                lane,
+                |least| open(least),
+                |x, y, index, strip, plane| {
+                    // Edges that are nearly horizontal reach beyond the corners; the box does not.
+                    let box_strip = Strip::<T> { left: columns.0, right: columns.1 };
+                    let mut touched = t.and(strip.coverage(t, x), box_strip.coverage(t, x));
+                    if let Some(outside) = buffer.border(x, y) {
+                        // SAFETY: eight words.
+                        touched = t.and_not(unsafe { t.load_i(outside.as_ptr()) }, touched);
+                    }
+                    let depth = t.min(plane, t.f(batch.z_clamp[lane]));
+                    tally.traversed += 1;
+                    // SAFETY: as above; the buffer was made for the rule `R`.
+                    let visible = if unsafe { *buffer.least().add(index) } == UNTOUCHED {
+                        t.mask_bits(t.eq_i(touched, t.i(0))) != 0xff
+                    } else {
+                        let planes = unsafe { R::load(t, buffer.tile(index)) };
+                        t.mask_bits(R::hides(t, &planes, touched, depth)) != 0xff
+                    };
+                    if visible {
+                        tally.rasterized += u64::from((alive.rasterized & ((2 << lane) - 1)).count_ones());
+                        return false;
+                    }
                 }
-                // Edges that are nearly horizontal reach beyond the corners; the box does not.
-                let strip = Strip::<T> { left: columns.0, right: columns.1 };
-                let mut touched = t.and(coverage(), strip.coverage(t, x));
-                if let Some(outside) = buffer.border(x, y) {
-                    // SAFETY: eight words.
-                    touched = t.and_not(unsafe { t.load_i(outside.as_ptr()) }, touched);
-                }
-                let depth = t.min(plane, t.f(batch.z_clamp[lane]));
-                tally.traversed += 1;
-                // SAFETY: as above; the buffer was made for the rule `R`.
-                let visible = if least == UNTOUCHED {
-                    t.mask_bits(t.eq_i(touched, t.i(0))) != 0xff
-                } else {
-                    let planes = unsafe { R::load(t, buffer.tile(index)) };
-                    t.mask_bits(R::hides(t, &planes, touched, depth)) != 0xff
-                };
-                if visible {
-                    tally.rasterized += u64::from((alive.rasterized & ((2 << lane) - 1)).count_ones());
-                    return false;
-                }
-            });
+            );
         }
         tally.rasterized += u64::from(alive.rasterized.count_ones());
         true
