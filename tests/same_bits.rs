@@ -97,9 +97,9 @@ const GOLDEN: [[[u64; 3]; 3]; 5] = [
     ],
     [
         // soup
-        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xbafc_5dbb_25cc_5812],
-        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x8cd9_b171_3506_c974],
-        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0xb8fe_658a_3e20_d840],
+        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xc0b2_a0ca_622e_ebc3],
+        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x8eba_e675_e72d_7b7b],
+        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0x5b36_ebbe_fb82_2ddb],
     ],
     [
         // hostile
