@@ -3,6 +3,9 @@
 //! Each plane is clipped against in turn (Sutherland and Hodgman 1974). A new vertex is computed from the
 //! inside end of its edge to the outside end, so that two triangles that share the edge get the same vertex. Vertices
 //! that need no clipping keep the screen coordinates that the vectors gave them, for the same reason.
+//!
+//! A new vertex is a mean of two that are as large as the triangle; where its w is so much smaller that rounding could
+//! move it by a quarter of a subpixel on the screen, the triangle is refused as if it were not finite.
 
 use super::Facing;
 use super::cull::packed;
@@ -37,6 +40,9 @@ struct Vertex {
     /// Where the vectors put it; NaN where they could not.
     screen: [f32; 3],
 }
+
+/// Rounding of a new vertex's coordinates, relative to the triangle's largest: five planes, a few roundings each.
+const ROUNDING: f64 = 1.0 / (1_u64 << 48) as f64;
 
 const NO_VERTEX: Vertex = Vertex { clip: [0.0; 3], screen: [f32::NAN; 3] };
 
@@ -85,9 +91,21 @@ pub(super) fn triangle(purpose: Purpose, camera: &Camera, clip: &[[f32; 3]; 3], 
     ];
     for plane in planes {
         (corners, len) = against(plane, &corners, len);
+        if plane == planes[0] {
+            // On the near plane w is known; what rounding makes of it may be zero.
+            for v in corners[..len].iter_mut().filter(|v| v.screen[0].is_nan()) {
+                v.clip[2] = v.clip[2].max(f64::from(camera.near));
+            }
+        }
     }
     if len < 3 {
         return Clipped::Nothing;
+    }
+    let largest = clip.as_flattened().iter().fold(0.0, |m: f64, x| m.max(f64::from(x.abs())));
+    let subpixels = f64::from(camera.half_width.max(camera.half_height));
+    let unsure = |v: &Vertex| v.screen[0].is_nan() && largest * ROUNDING * subpixels > 0.25 * v.clip[2];
+    if corners[..len].iter().any(unsure) {
+        return refused;
     }
     let mut polygon = Polygon { corners: [[0.0; 3]; MAX_VERTICES], len };
     for (to, from) in polygon.corners.iter_mut().zip(&corners[..len]) {
@@ -118,7 +136,8 @@ fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize)
             let (inside, outside, near, far) =
                 if at_from >= 0.0 { (from, to, at_from, at_to) } else { (to, from, at_to, at_from) };
             let part = near / (near - far);
-            let between = |k: usize| inside.clip[k] + part * (outside.clip[k] - inside.clip[k]);
+            // A mean with two weights, neither of which loses what is small beside what is large.
+            let between = |k: usize| inside.clip[k] * (1.0 - part) + outside.clip[k] * part;
             push(Vertex { clip: [between(0), between(1), between(2)], screen: [f32::NAN; 3] });
         }
     }

@@ -166,7 +166,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
             return (CullingResult::Visible, tally);
         }
     }
-    let result = match (in_view, L::PURPOSE) {
+    let result = match (in_view && last.found(), L::PURPOSE) {
         (false, _) => CullingResult::ViewCulled,
         (true, Purpose::Query) => CullingResult::Occluded,
         (true, _) => CullingResult::Visible,

@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 
 use super::edges::bits;
 use super::setup::{Alive, Batch, Purpose};
-use super::traverse::{Lists, TileStep, Way, traverse};
+use super::traverse::{Lists, TileStep, Visited, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
@@ -20,6 +20,12 @@ pub(super) trait LastStep {
 
     /// Takes the triangles that are alive, in order. False: no more are needed.
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool;
+
+    /// Did any triangle come to anything? One can have its box on the screen and touch no pixel.
+    #[inline(always)]
+    fn found(&self) -> bool {
+        true
+    }
 }
 
 /// Draws into a buffer, inside of a rectangle of tiles.
@@ -50,10 +56,10 @@ impl<T: Simd> LastStep for Draw<'_, T> {
         let &mut Self { t, buffer, clip, ref mut lists } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
-        let Seen { updated, merged, .. } = match buffer.rule() {
-            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer>::new(buffer) }),
-            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick>::new(buffer) }),
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate>::new(buffer) }),
+        let (updated, merged) = match buffer.rule() {
+            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer>::new(buffer) }).1.counts(),
+            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick>::new(buffer) }).1.counts(),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate>::new(buffer) }).1.counts(),
         };
         tally.updated += updated;
         tally.merged += merged;
@@ -61,28 +67,18 @@ impl<T: Simd> LastStep for Draw<'_, T> {
     }
 }
 
-/// Triangles to be taken to a step, and what came of it.
+/// Triangles to be taken to a step.
 struct Traverse<'a, S> {
     way: Way<'a>,
     step: S,
 }
 
-struct Seen {
-    /// The lane at which no more were needed.
-    lane: Option<u32>,
-    tiles: u64,
-    updated: u64,
-    merged: u64,
-}
-
 impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
-    type Output = Seen;
+    type Output = (Visited, S);
 
     #[inline(always)]
-    fn run(mut self, t: T) -> Seen {
-        let (lane, tiles) = traverse(t, self.way, &mut self.step);
-        let (updated, merged) = self.step.counts();
-        Seen { lane, tiles, updated, merged }
+    fn run(mut self, t: T) -> (Visited, S) {
+        (traverse(t, self.way, &mut self.step), self.step)
     }
 }
 
@@ -105,6 +101,12 @@ impl<'a, R> Update<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
         Self { buffer, updated: 0, merged: 0, rule: PhantomData }
+    }
+
+    /// Tiles that were updated, and in which the reference depth rose.
+    #[inline(always)]
+    fn counts(&self) -> (u64, u64) {
+        (self.updated, self.merged)
     }
 }
 
@@ -138,11 +140,6 @@ impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
         self.merged += u64::from(t.mask_bits(inserted.merged) != 0);
         true
     }
-
-    #[inline(always)]
-    fn counts(&self) -> (u64, u64) {
-        (self.updated, self.merged)
-    }
 }
 
 /// Compares with a buffer until something may be seen.
@@ -150,13 +147,15 @@ pub(super) struct Query<'a, T> {
     t: T,
     buffer: &'a Buffer,
     lists: MaybeUninit<Lists>,
+    /// Some triangle touched a pixel, or was hidden before that was known.
+    found: bool,
 }
 
 impl<'a, T: Simd> Query<'a, T> {
     #[inline(always)]
     pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
         const { assert!(T::LANES == SUB_TILES) }
-        Self { t, buffer, lists: Lists::new() }
+        Self { t, buffer, lists: Lists::new(), found: false }
     }
 }
 
@@ -165,30 +164,43 @@ impl<T: Simd> LastStep for Query<'_, T> {
 
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
-        let &mut Self { t, buffer, ref mut lists } = self;
+        let &mut Self { t, buffer, ref mut lists, .. } = self;
         let way = Way { buffer, clip: buffer.all_tiles(), batch, alive, lists };
-        let seen = match buffer.rule() {
-            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) }),
-            UpdateRule::Quick => t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) }),
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) }),
+        let (visited, touches) = match buffer.rule() {
+            UpdateRule::ThreeLayer => compared(t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) })),
+            UpdateRule::Quick => compared(t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) })),
+            UpdateRule::Accurate => compared(t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) })),
         };
-        tally.traversed += seen.tiles;
+        self.found |= touches || visited.hidden || alive.rasterized != alive.lanes;
+        tally.traversed += visited.tiles;
         // Triangles after the first that may be seen do not count, however many a vector has.
-        let counted = seen.lane.map_or(u32::MAX, |lane| (2 << lane) - 1);
+        let counted = visited.stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from((alive.rasterized & counted).count_ones());
-        seen.lane.is_none()
+        visited.stopped.is_none()
     }
+
+    #[inline(always)]
+    fn found(&self) -> bool {
+        self.found
+    }
+}
+
+#[inline(always)]
+fn compared<R>((visited, step): (Visited, Compare<'_, R>)) -> (Visited, bool) {
+    (visited, step.touches)
 }
 
 struct Compare<'a, R> {
     buffer: &'a Buffer,
+    /// Some pixel was touched.
+    touches: bool,
     rule: PhantomData<R>,
 }
 
 impl<'a, R> Compare<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, rule: PhantomData }
+        Self { buffer, touches: false, rule: PhantomData }
     }
 }
 
@@ -207,6 +219,7 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
             if let Some(outside) = self.buffer.border(x, y) {
                 covered = t.and_not(t.load_i(outside.as_ptr()), covered);
             }
+            self.touches |= t.mask_bits(t.eq_i(covered, t.i(0))) != 0xff;
             let hidden = if *self.buffer.least().add(index) == UNTOUCHED {
                 t.eq_i(covered, t.i(0))
             } else {

@@ -53,12 +53,6 @@ pub(super) trait TileStep<T: Simd> {
     /// # Safety
     /// It is a tile of the buffer, and the caller of the pipeline allowed its use.
     unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, covered: T::I, depth: T::F) -> bool;
-
-    /// Tiles that were updated, and in which the reference depth rose.
-    #[inline(always)]
-    fn counts(&self) -> (u64, u64) {
-        (0, 0)
-    }
 }
 
 /// Room for the lists; not initialised.
@@ -91,16 +85,26 @@ pub(super) struct Way<'a> {
     pub lists: &'a mut MaybeUninit<Lists>,
 }
 
-/// Takes the triangles in `alive.lanes`, in order, to `step`. The lane at which `step` wanted no more, and how many
-/// tiles it was given.
+/// What came of a traversal.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Visited {
+    /// The lane at which the step wanted no more.
+    pub stopped: Option<u32>,
+    /// Tiles that the step was given.
+    pub tiles: u64,
+    /// Some tile was left out for its least depth.
+    pub hidden: bool,
+}
+
+/// Takes the triangles in `alive.lanes`, in order, to `step`.
 #[inline(always)]
-pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S) -> (Option<u32>, u64) {
+pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S) -> Visited {
     let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is an array of `MaybeUninit`.
     let lists = unsafe { lists.assume_init_mut() };
     let mut todo = alive.lanes;
     let (mut group, mut row) = (0, 0);
-    let mut visited = 0;
+    let mut visited = Visited::default();
     loop {
         // Rows of the triangles' boxes, several at a time.
         let mut rows = 0;
@@ -126,7 +130,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             }
         }
         if rows == 0 {
-            return (None, visited);
+            return visited;
         }
 
         // Those with open tiles.
@@ -140,7 +144,9 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let least = unsafe { t.load_f(buffer.least().add((y * buffer.tiles_w() + x) as usize)) };
             let open = t.mask_bits(S::open(t, least, t.f(batch.nearest[lane])));
             let below = |tile: u32| (1_u32 << tile.saturating_sub(x).min(TILES)) - 1;
-            let open = open & below(end) & !below(begin);
+            let inside = below(end) & !below(begin);
+            visited.hidden |= open & inside != inside;
+            let open = open & inside;
             lists.rows[strips].write(word);
             lists.open[strips].write(open);
             strips += usize::from(open != 0);
@@ -177,7 +183,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             }
         }
 
-        visited += tiles as u64;
+        visited.tiles += tiles as u64;
         for k in 0..tiles {
             // SAFETY: the first `tiles` were just written, each with the number of a strip that was.
             let (dx, strip) = unsafe {
@@ -195,7 +201,9 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let depth = if S::DRAWS { t.max(plane, clamp) } else { t.min(plane, clamp) };
             // SAFETY: a tile of the triangle's box is a tile of the buffer.
             if !unsafe { step.tile(t, (strip.first + dx) as usize, x, strip.y, covered, depth) } {
-                return (Some(strip.lane), visited - (tiles - 1 - k) as u64);
+                visited.stopped = Some(strip.lane);
+                visited.tiles -= (tiles - 1 - k) as u64;
+                return visited;
             }
         }
     }

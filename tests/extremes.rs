@@ -1,0 +1,87 @@
+//! Coordinates of all sizes at once, as no scene has them: what comes out is bounded all the same.
+
+use masked_occlusion_culling::{
+    BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
+};
+
+/// A number of either sign between 10^-25 and 10^25, its exponent uniform; sometimes zero.
+fn any_size(random: &mut fastrand::Rng, limit: f32) -> f32 {
+    if random.u32(..16) == 0 {
+        return 0.0;
+    }
+    let size = 10.0_f32.powf((random.f32() * 2.0 - 1.0) * limit);
+    if random.bool() { size } else { -size }
+}
+
+fn object(rule: UpdateRule, width: u32, height: u32) -> MaskedOcclusionCulling {
+    let settings = Settings { implementation: Implementation::Avx512, update_rule: rule, ..Settings::default() };
+    let mut moc = MaskedOcclusionCulling::new(settings);
+    moc.set_resolution(width, height).unwrap();
+    moc
+}
+
+const BOTH_SIDES: DrawOptions = DrawOptions {
+    model_to_clip: None,
+    winding: BackfaceWinding::None,
+    clip_planes: masked_occlusion_culling::ClipPlanes::ALL,
+};
+
+/// Nothing in front of the near plane is ever stored, least of all something infinitely near, which hides everything.
+#[test]
+fn no_depth_is_nearer_than_the_near_plane() {
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut depth = vec![0.0; 64 * 48];
+    for (rule, near) in [(UpdateRule::ThreeLayer, 0.0), (UpdateRule::Quick, 0.25), (UpdateRule::Accurate, 0.0)] {
+        let mut moc = object(rule, 64, 48);
+        moc.set_near_clip_plane(near).unwrap();
+        // Nothing nearer than 2^-30 is projected.
+        let nearest = 1.0 / near.max(2.0_f32.powi(-30)) * 1.000_001;
+        let mut drawn = 0;
+        for limit in [3.0, 10.0, 25.0] {
+            for _ in 0..4000 {
+                let triangle: [[f32; 4]; 3] =
+                    core::array::from_fn(|_| core::array::from_fn(|_| any_size(&mut random, limit)));
+                moc.clear_buffer().unwrap();
+                moc.render_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+                moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+                drawn += usize::from(depth.iter().any(|&d| d > 0.0));
+                assert!(depth.iter().all(|&d| d <= nearest), "{triangle:?}");
+            }
+        }
+        assert!(drawn > 500, "only {drawn} triangles reached the screen");
+    }
+}
+
+/// An empty buffer hides nothing: what is not visible in it lies outside of the view.
+#[test]
+fn an_empty_buffer_never_answers_occluded() {
+    let mut random = fastrand::Rng::with_seed(2);
+    for (width, height) in [(1, 1), (3, 2), (64, 48)] {
+        let moc = object(UpdateRule::ThreeLayer, width, height);
+        let mut culled = 0;
+        for k in 0..6000 {
+            let triangle: [[f32; 4]; 3] = core::array::from_fn(|_| {
+                if k % 2 == 0 {
+                    // Around the screen, where a box may reach it and the triangle does not.
+                    let mut side = || random.i32(-9..=9) as f32;
+                    [side(), side(), 0.0, 1.0]
+                } else {
+                    core::array::from_fn(|_| any_size(&mut random, 6.0))
+                }
+            });
+            let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+            assert_ne!(answer, CullingResult::Occluded, "{width}x{height} {triangle:?}");
+            culled += usize::from(answer == CullingResult::ViewCulled);
+        }
+        assert!(culled > 100, "{culled}");
+    }
+}
+
+/// Found by the fuzzer: the box of this triangle holds the only pixel, the triangle passes by.
+#[test]
+fn a_triangle_that_passes_by_the_only_pixel_is_view_culled() {
+    let moc = object(UpdateRule::ThreeLayer, 1, 1);
+    let triangle = [[4.0, -9.0, 0.0, 1.0], [5.0, -3.0, 0.0, 1.0], [-8.0, 1.0, 0.0, 1.0]];
+    let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
+    assert_eq!(answer, Ok(CullingResult::ViewCulled));
+}
