@@ -13,6 +13,11 @@
  * value), a method that returns nothing does nothing, a query and a draw answer VISIBLE, and a number that is
  * asked for is 0. The C functions say what was wrong.
  *
+ * Indices are trusted: RenderTriangles, TestTriangles and BinTriangles read every vertex from the lowest to the
+ * highest index of the call, whether or not an index names it, and of vertices of 12 or 16 bytes with y at 4 and
+ * w (or z) at 8 or 12 all that lies between. All of that has to be readable. For other indices the C functions
+ * whose names end in Checked take the length of the vertices, and refuse.
+ *
  * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run at once on several threads while
  * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent.
  *
@@ -33,6 +38,10 @@
  * USE_D3D           1: row 0 is the top of the screen (default); 0: the bottom (OpenGL).
  * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
+ *
+ * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
+ * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
+ * `#if QUICK_MASK` of the program then is false, and -Wundef says so. Define them to have it as before.
  *
  * Accepted without effect, because both answers hold always: CLIPPING_PRESERVES_ORDER (the order is kept)
  * and ENABLE_STATS (statistics are gathered).
@@ -152,8 +161,8 @@ public:
     };
 
     /**
-     * A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the size of the buffer, and lies
-     * at most at the next multiple.
+     * A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the size of the buffer, or that
+     * rounded up to the next multiple.
      */
     struct ScissorRect
     {
@@ -180,8 +189,11 @@ public:
         struct
         {
             long long mNumProcessedTriangles;  /**< submitted to be drawn or binned, and those of drawn lists */
-            long long mNumRasterizedTriangles; /**< facing the eye, in view, with a pixel centre */
-            long long mNumTilesTraversed;      /**< 32x8 tiles that they reach and that were not nearer already */
+            /** That face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
+             * and again in each list drawn. */
+            long long mNumRasterizedTriangles;
+            /** 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle. */
+            long long mNumTilesTraversed;
             long long mNumTilesUpdated;        /**< tiles in which one changed, or could have changed, a sub-tile */
             long long mNumTilesMerged;         /**< tiles in which a reference depth rose */
             long long mNumDroppedTriangles;    /**< dropped for a NaN, an infinity or a distance beyond 2^40 */
@@ -191,7 +203,8 @@ public:
         {
             long long mNumProcessedRectangles; /**< rectangles tested */
             long long mNumProcessedTriangles;  /**< triangles submitted to be tested */
-            long long mNumRasterizedTriangles; /**< those of them that were compared with the buffer */
+            /** Those of them that were compared with the buffer, up to the first visible one. */
+            long long mNumRasterizedTriangles;
             long long mNumTilesTraversed;      /**< tiles that were compared with */
         } mOccludees;
     };
@@ -200,7 +213,9 @@ public:
      * An object without a buffer, on the best instruction set that the processor has and the argument allows.
      * Null when there is no memory, or the library is of another version than this header.
      *
-     * The template argument carries the switches of the translation unit that calls; leave it out.
+     * The template argument carries the switches of the translation unit that calls; leave it out. Where
+     * translation units have different switches its default differs between them, which the rule of one
+     * definition forbids in letter; what is compiled is one function for each value, and never the wrong one.
      */
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(Implementation RequestedSIMD = AVX512)
@@ -263,7 +278,13 @@ public:
 
     /**
      * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view or
-     * faces away, else VISIBLE. With a matrix the layout's last offset names z, without one it names w.
+     * faces away, else VISIBLE.
+     *
+     * modelToClipMatrix (null: the vertices are in clip space): 16 floats m,
+     *     x' = x*m[0] + y*m[4] + z*m[8] + m[12],
+     *     y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15].
+     * vtxLayout: without a matrix the third offset names w. With a matrix the third offset names z: pass
+     * (16, 4, 8) or (12, 4, 8), for the default does not fit.
      */
     CullingResult RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                   const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
@@ -276,7 +297,11 @@ public:
         return static_cast<CullingResult>(result);
     }
 
-    /** Tests a rectangle in normalised device coordinates whose nearest point is at wmin, in clip-space w. */
+    /**
+     * Tests a rectangle in normalised device coordinates whose nearest point is at wmin, in clip-space w.
+     * VISIBLE when some of it is nearer than what was drawn, or at the same depth; VIEW_CULLED when it lies off
+     * screen; VISIBLE, too, for a NaN, for wmin <= 0 and for an empty rectangle (a minimum above its maximum).
+     */
     CullingResult TestRect(float xmin, float ymin, float xmax, float ymax, float wmin) const
     {
         int32_t result = MOC_VISIBLE;
@@ -284,7 +309,11 @@ public:
         return static_cast<CullingResult>(result);
     }
 
-    /** Tests occludees: the arguments of RenderTriangles; changes nothing. */
+    /**
+     * Tests occludees: VISIBLE when some part is nearer than what was drawn, or at the same depth. VIEW_CULLED
+     * when no triangle that faces the eye touches a pixel. The arguments are those of RenderTriangles: with a
+     * matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third offset names z: pass (16, 4, 8) or (12, 4, 8).
+     */
     CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                 const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
                                 ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
@@ -298,7 +327,9 @@ public:
 
     /**
      * Appends each triangle that may be drawn to the list of every bin that it reaches; nBinsW * nBinsH lists,
-     * row by row. A full list takes no more: its mTriIdx is then mNumTriangles, and less is hidden.
+     * row by row. A full list takes no more: its mTriIdx is then mNumTriangles, and less is hidden. The other
+     * arguments are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third
+     * offset names z: pass (16, 4, 8) or (12, 4, 8).
      */
     void BinTriangles(const float *inVtx, const unsigned int *inTris, int nTris, TriList *triLists,
                       unsigned int nBinsW, unsigned int nBinsH, const float *modelToClipMatrix = nullptr,
@@ -310,7 +341,11 @@ public:
                          modelToClipMatrix, bfWinding, clipPlaneMask, &layout, nullptr);
     }
 
-    /** Draws a list inside the rectangle (null: everywhere). Several threads may, on separate rectangles. */
+    /**
+     * Draws a list inside the rectangle (null: everywhere). Several threads may, on separate rectangles. One
+     * that is not in multiples of 32 and 8 (see ScissorRect) is refused silently, and nothing is drawn;
+     * MOC_RenderTrilist gives the status.
+     */
     void RenderTrilist(const TriList &triList, const ScissorRect *scissor)
     {
         if (scissor == nullptr)

@@ -393,7 +393,7 @@ typedef struct MOC_TriList {
 
 /**
  * A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
- * maximum may also be the width or height of the buffer, and lies at most at the next multiple.
+ * maximum may also be the width or height of the buffer, or that rounded up to the next multiple.
  */
 typedef struct MOC_ScissorRect {
     /**
@@ -423,11 +423,12 @@ typedef struct MOC_OccluderStatistics {
      */
     int64_t num_processed_triangles;
     /**
-     * Those that face the eye, lie in view and hold a pixel centre.
+     * Those that face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
+     * and again in each list drawn.
      */
     int64_t num_rasterized_triangles;
     /**
-     * 32x8 tiles that such triangles reach and that were not nearer already.
+     * 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle.
      */
     int64_t num_tiles_traversed;
     /**
@@ -457,7 +458,7 @@ typedef struct MOC_OccludeeStatistics {
      */
     int64_t num_processed_triangles;
     /**
-     * Those of them that were compared with the buffer.
+     * Those of them that were compared with the buffer, up to the first visible one.
      */
     int64_t num_rasterized_triangles;
     /**
@@ -646,8 +647,9 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCul
  *
  * `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
  * packed, 16 bytes a vertex). It may lie at any address. With `model_to_clip` (16 floats, x' = x*m[0] +
- * y*m[4] + z*m[8] + m[12] and so on) vertices are x, y, z in model space, and the last offset of the layout
- * names z; without it (null) they are x, y, w in clip space. `triangles` holds three indices for each of
+ * y*m[4] + z*m[8] + m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]) vertices are x, y, z
+ * in model space, and the last offset of the layout names z: pass (16, 4, 8) or (12, 4, 8). Without it (null)
+ * they are x, y, w in clip space. `triangles` holds three indices for each of
  * the `n_triangles` (0 or more). `winding` is a MOC_BackfaceWinding, `clip_planes` are MOC_ClipPlanes.
  *
  * `result` (may be null) gets MOC_VIEW_CULLED when every triangle lies outside of the view or faces away,
@@ -659,8 +661,10 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCul
  * negative stride or indices that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
  *
  * # Safety
- * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. Every vertex that
- * an index names can be read, and so can the indices, the matrix and the layout.
+ * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
+ * matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
+ * whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
+ * y at 4 and w (or z) at 8 or 12. MOC_RenderTrianglesChecked is for indices that are not known to be right.
  */
 MOC_Status MOC_RenderTriangles(MaskedOcclusionCulling *moc,
                                const float *vertices,
@@ -697,11 +701,13 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
 /**
  * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere).
  *
- * Several threads may call it at once for one object, on rectangles that do not overlap.
+ * The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
+ * rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one
+ * object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
  *
  * Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
- * MOC_STATUS_INVALID_SIZE for a rectangle that is not in multiples of 32 and 8 or reaches outside of the
- * buffer, or a list whose `count` is above its `capacity`.
+ * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
+ * its `capacity`; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
  *
  * # Safety
  * `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -713,16 +719,19 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
                              const struct MOC_ScissorRect *scissor);
 
 /**
- * Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn?
+ * Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
+ * same depth?
  *
  * The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
- * those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VISIBLE also for
- * triangles with a NaN or infinite coordinate, and on errors. Several threads may test at once.
+ * those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
+ * triangle that faces the eye touches a pixel; MOC_VISIBLE also for triangles with a NaN or infinite
+ * coordinate, and on errors. Several threads may test at once.
  *
  * Errors: as MOC_RenderTriangles.
  *
  * # Safety
- * As MOC_RenderTriangles, but other threads may query `moc` meanwhile.
+ * As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
+ * query `moc` meanwhile.
  */
 MOC_Status MOC_TestTriangles(const MaskedOcclusionCulling *moc,
                              const float *vertices,
@@ -756,10 +765,12 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
 
 /**
  * Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest
- * point is at `wmin`, in clip-space w. Every pixel that it touches counts.
+ * point is at `wmin`, in clip-space w. Every pixel that it touches counts, and is visible where the rectangle
+ * is nearer, or at the same depth.
  *
- * `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a coordinate is NaN, `wmin` is not
- * positive or the rectangle is empty, and on errors. Several threads may test at once.
+ * `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a number is NaN, `wmin` is not
+ * positive or the rectangle is empty (a minimum above its maximum), and on errors. Several threads may test at
+ * once.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
@@ -825,7 +836,7 @@ MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc, struct MOC_Stati
  * alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
  *
  * # Safety
- * As MOC_TestTriangles. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data`
+ * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data`
  * of each for 9 * `capacity` floats; nobody else uses them meanwhile.
  */
 MOC_Status MOC_BinTriangles(const MaskedOcclusionCulling *moc,

@@ -26,8 +26,9 @@ struct BinArguments {
 /// alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
 ///
 /// # Safety
-/// As MOC_TestTriangles. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data`
-/// of each for 9 * `capacity` floats; nobody else uses them meanwhile.
+/// As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
+/// written for `bins_w` times `bins_h` lists, and the `data` of each for 9 * `capacity` floats; nobody else uses
+/// them meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_BinTriangles(
     moc: *const MaskedOcclusionCulling,
@@ -119,7 +120,7 @@ unsafe fn bin(
         if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
             return Err(Error::NullPointer);
         }
-        // SAFETY: the caller's contract: every vertex that is named can be read.
+        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
         unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }
     };
     // SAFETY: the caller's contract.

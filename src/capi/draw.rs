@@ -46,8 +46,9 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
 ///
 /// `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
 /// packed, 16 bytes a vertex). It may lie at any address. With `model_to_clip` (16 floats, x' = x*m[0] +
-/// y*m[4] + z*m[8] + m[12] and so on) vertices are x, y, z in model space, and the last offset of the layout
-/// names z; without it (null) they are x, y, w in clip space. `triangles` holds three indices for each of
+/// y*m[4] + z*m[8] + m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]) vertices are x, y, z
+/// in model space, and the last offset of the layout names z: pass (16, 4, 8) or (12, 4, 8). Without it (null)
+/// they are x, y, w in clip space. `triangles` holds three indices for each of
 /// the `n_triangles` (0 or more). `winding` is a MOC_BackfaceWinding, `clip_planes` are MOC_ClipPlanes.
 ///
 /// `result` (may be null) gets MOC_VIEW_CULLED when every triangle lies outside of the view or faces away,
@@ -59,8 +60,10 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
 /// negative stride or indices that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. Every vertex that
-/// an index names can be read, and so can the indices, the matrix and the layout.
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
+/// matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
+/// whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
+/// y at 4 and w (or z) at 8 or 12. MOC_RenderTrianglesChecked is for indices that are not known to be right.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_RenderTriangles(
     moc: *mut MaskedOcclusionCulling,
@@ -131,7 +134,7 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: 
         let moc = unsafe { object_mut(moc) }?;
         // SAFETY: the caller's contract.
         let mesh = unsafe { mesh.check(moc) }?;
-        // SAFETY: the caller's contract: every vertex that is named can be read.
+        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
         unsafe { moc.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
     };
     // SAFETY: the caller's contract.
@@ -140,11 +143,13 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: 
 
 /// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere).
 ///
-/// Several threads may call it at once for one object, on rectangles that do not overlap.
+/// The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
+/// rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one
+/// object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
-/// MOC_STATUS_INVALID_SIZE for a rectangle that is not in multiples of 32 and 8 or reaches outside of the
-/// buffer, or a list whose `count` is above its `capacity`.
+/// MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
+/// its `capacity`; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping

@@ -30,8 +30,8 @@ pub(super) struct CheckedMesh<'a> {
 impl MeshArguments {
     /// # Safety
     /// Each pointer is null or can be read: `triangles` for three indices a triangle, `model_to_clip` for
-    /// 16 floats, and `vertices` for `vertex_floats` floats or, without that, at every vertex that an
-    /// index names.
+    /// 16 floats, and `vertices` for `vertex_floats` floats or, without that, at every vertex from the lowest
+    /// to the highest index.
     pub unsafe fn check<'a>(self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Error> {
         let count = usize::try_from(self.n_triangles).map_err(|_| Error::InvalidSize)?;
         let indices = count.checked_mul(3).ok_or(Error::InvalidSize)?;

@@ -6,16 +6,19 @@ use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_Statistics, MOC_VertexLayout};
 use crate::{Error, MaskedOcclusionCulling};
 
-/// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn?
+/// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
+/// same depth?
 ///
 /// The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
-/// those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VISIBLE also for
-/// triangles with a NaN or infinite coordinate, and on errors. Several threads may test at once.
+/// those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
+/// triangle that faces the eye touches a pixel; MOC_VISIBLE also for triangles with a NaN or infinite
+/// coordinate, and on errors. Several threads may test at once.
 ///
 /// Errors: as MOC_RenderTriangles.
 ///
 /// # Safety
-/// As MOC_RenderTriangles, but other threads may query `moc` meanwhile.
+/// As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
+/// query `moc` meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_TestTriangles(
     moc: *const MaskedOcclusionCulling,
@@ -84,7 +87,7 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: 
         let moc = unsafe { object(moc) }?;
         // SAFETY: the caller's contract.
         let mesh = unsafe { mesh.check(moc) }?;
-        // SAFETY: the caller's contract: every vertex that is named can be read.
+        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
         unsafe { moc.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
     };
     // SAFETY: the caller's contract.
@@ -92,10 +95,12 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: 
 }
 
 /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest
-/// point is at `wmin`, in clip-space w. Every pixel that it touches counts.
+/// point is at `wmin`, in clip-space w. Every pixel that it touches counts, and is visible where the rectangle
+/// is nearer, or at the same depth.
 ///
-/// `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a coordinate is NaN, `wmin` is not
-/// positive or the rectangle is empty, and on errors. Several threads may test at once.
+/// `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a number is NaN, `wmin` is not
+/// positive or the rectangle is empty (a minimum above its maximum), and on errors. Several threads may test at
+/// once.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///

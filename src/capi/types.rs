@@ -132,7 +132,7 @@ pub struct MOC_VertexLayout {
 }
 
 /// A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
-/// maximum may also be the width or height of the buffer, and lies at most at the next multiple.
+/// maximum may also be the width or height of the buffer, or that rounded up to the next multiple.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_ScissorRect {
@@ -164,9 +164,10 @@ pub struct MOC_TriList {
 pub struct MOC_OccluderStatistics {
     /// Triangles submitted to be drawn or binned, and those of drawn lists.
     pub num_processed_triangles: i64,
-    /// Those that face the eye, lie in view and hold a pixel centre.
+    /// Those that face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
+    /// and again in each list drawn.
     pub num_rasterized_triangles: i64,
-    /// 32x8 tiles that such triangles reach and that were not nearer already.
+    /// 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle.
     pub num_tiles_traversed: i64,
     /// Tiles in which a triangle changed, or could have changed, a sub-tile.
     pub num_tiles_updated: i64,
@@ -184,7 +185,7 @@ pub struct MOC_OccludeeStatistics {
     pub num_processed_rectangles: i64,
     /// Triangles submitted to be tested.
     pub num_processed_triangles: i64,
-    /// Those of them that were compared with the buffer.
+    /// Those of them that were compared with the buffer, up to the first visible one.
     pub num_rasterized_triangles: i64,
     /// Tiles that rectangles and triangles were compared with.
     pub num_tiles_traversed: i64,
