@@ -836,8 +836,9 @@ MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc, struct MOC_Stati
  * alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
  *
  * # Safety
- * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data`
- * of each for 9 * `capacity` floats; nobody else uses them meanwhile.
+ * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
+ * written for `bins_w` times `bins_h` lists, and the `data` of each for 9 * `capacity` floats; nobody else uses
+ * them meanwhile.
  */
 MOC_Status MOC_BinTriangles(const MaskedOcclusionCulling *moc,
                             const float *vertices,
