@@ -201,7 +201,7 @@ impl MaskedOcclusionCulling {
     }
 
     /// # Safety
-    /// Every vertex that `triangles` names can be read through `vertices`.
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
     pub(crate) unsafe fn render_triangles_unchecked(
         &mut self,
         vertices: VertexSource,
@@ -237,7 +237,7 @@ impl MaskedOcclusionCulling {
     }
 
     /// # Safety
-    /// Every vertex that `triangles` names can be read through `vertices`.
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
     pub(crate) unsafe fn test_triangles_unchecked(
         &self,
         vertices: VertexSource,
@@ -297,7 +297,7 @@ impl MaskedOcclusionCulling {
     }
 
     /// # Safety
-    /// Every vertex that `triangles` names can be read through `vertices`.
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
     pub(crate) unsafe fn bin_triangles_unchecked(
         &self,
         vertices: VertexSource,

@@ -14,8 +14,12 @@ impl Rule for Quick {
         let Planes { z0, z_near: z1, near: mask, .. } = *planes;
         let live = live(s, z0, c, depth);
         // A jump in depth means another object: the layer gives way to it.
-        let discard = s.lt(s.sub(z1, z0), s.sub(depth, z1));
-        let anew = s.or_m(discard, s.eq_i(mask, s.i(0)));
+        // But nothing gives way while the reference is empty, for then it would be lost to nothing.
+        let jump = s.lt(s.sub(z1, z0), s.sub(depth, z1));
+        let discard = s.and_m(s.lt(s.f(0.0), z0), jump);
+        // A triangle that covers everything by itself needs nothing of the layer.
+        let alone = s.or_m(s.eq_i(mask, s.i(0)), s.eq_i(c, s.i(-1)));
+        let anew = s.or_m(discard, alone);
         let z = s.select(anew, depth, s.min(z1, depth));
         let m = s.select_i(anew, c, s.or(mask, c));
         let full = s.and_m(live, s.eq_i(m, s.i(-1)));

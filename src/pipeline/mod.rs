@@ -63,7 +63,7 @@ impl Facing {
 /// Draws a mesh.
 ///
 /// # Safety
-/// Every vertex that the mesh names can be read, and nobody else uses the buffer.
+/// Every vertex from the lowest to the highest that the mesh names can be read, and nobody else uses the buffer.
 pub(crate) unsafe fn draw(
     implementation: Implementation,
     buffer: &Buffer,
@@ -76,7 +76,7 @@ pub(crate) unsafe fn draw(
 /// Tests a mesh.
 ///
 /// # Safety
-/// Every vertex that the mesh names can be read, and nobody draws into the buffer.
+/// Every vertex from the lowest to the highest that the mesh names can be read, and nobody draws into the buffer.
 pub(crate) unsafe fn test(
     implementation: Implementation,
     buffer: &Buffer,
@@ -89,7 +89,7 @@ pub(crate) unsafe fn test(
 /// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True when one was full.
 ///
 /// # Safety
-/// Every vertex that the mesh names can be read.
+/// Every vertex from the lowest to the highest that the mesh names can be read.
 pub(crate) unsafe fn bin(
     implementation: Implementation,
     buffer: &Buffer,
