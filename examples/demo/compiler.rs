@@ -1,11 +1,11 @@
-//! Is there a C++ compiler?
+//! Is there a C++ compiler, and what went wrong with it?
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 
 use crate::Result;
 
-/// Says in one line when the compiler that would be used cannot be started.
+/// Says in one line when the compiler that would be used cannot be.
 pub fn find(folder: &Path) -> Result<()> {
     let target = env!("MOC_TARGET");
     let tool = cc::Build::new()
@@ -22,13 +22,41 @@ pub fn find(folder: &Path) -> Result<()> {
         Ok(tool) => tool.path().to_owned(),
         Err(_) => std::env::var_os("CXX").unwrap_or_else(|| "c++".into()).into(),
     };
-    let starts = |tool: cc::Tool| {
-        let mut command = Command::new(tool.path());
-        command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        command.status().is_ok()
+    let reason = match tool {
+        Ok(tool) => match version(&tool) {
+            Ok(status) if status.success() || tool.is_like_msvc() => return Ok(()),
+            Ok(_) => "does not work",
+            Err(_) => "was not found",
+        },
+        Err(_) => "was not found",
     };
-    if tool.is_ok_and(starts) {
-        return Ok(());
+    Err(format!("no C++ compiler: {} {reason} (set CXX)", name.display()).into())
+}
+
+/// Asks for the version, which every compiler but Microsoft's knows.
+fn version(tool: &cc::Tool) -> std::io::Result<ExitStatus> {
+    let mut command = Command::new(tool.path());
+    command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status()
+}
+
+/// What the compiler said, without the first line: the command, and with it the whole environment.
+pub fn complaint(error: String) -> String {
+    match error.split_once('\n') {
+        Some((_, said)) => format!("the C++ compiler failed:\n{}", said.trim_end()),
+        None => error,
     }
-    Err(format!("no C++ compiler: {} was not found (set CXX)", name.display()).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_complaint_leaves_the_environment_out() {
+        assert_eq!(
+            complaint("env -i HOME=\"/me\" \"c++\"\nno such header\nstatus 1\n".into()),
+            "the C++ compiler failed:\nno such header\nstatus 1"
+        );
+        assert_eq!(complaint("the library is missing".into()), "the library is missing");
+    }
 }

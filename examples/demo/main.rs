@@ -76,7 +76,8 @@ fn run(args: &Args) -> Result<()> {
             link: native::Link::Static,
             defines: args.rule.define().as_slice(),
             flags: &[],
-        })?)
+        })
+        .map_err(compiler::complaint)?)
     })?;
     let mut command = Command::new(program);
     command.arg(&scene_file).arg(&result_file);
