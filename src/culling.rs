@@ -217,7 +217,7 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
-    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn?
+    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the same depth?
     ///
     /// Every pixel that a triangle touches counts, not only those whose centre it covers. `Visible` is
     /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer
@@ -324,8 +324,8 @@ impl MaskedOcclusionCulling {
     /// Draws a list inside `scissor`, or everywhere.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8
-    /// (or ends at the buffer's edge), or reaches outside of the buffer.
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or ends at
+    /// the buffer's edge), or reaches beyond the buffer's last tile.
     pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
         // SAFETY: `&mut self` keeps every other user of the buffer away.
         unsafe { self.render_trilist_shared(list, scissor) }

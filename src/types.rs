@@ -177,7 +177,7 @@ impl Default for VertexLayout {
 }
 
 /// A rectangle of pixels: `min` inside, `max` outside. x in multiples of 32, y of 8; a `max` may also
-/// be the width or height of the buffer. Rows are counted in the object's y direction.
+/// be the width or height of the buffer, as it is or rounded up to whole tiles. Rows are counted in the object's y direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(C)]
 pub struct ScissorRect {
@@ -197,7 +197,8 @@ pub struct ScissorRect {
 pub struct OccluderStatistics {
     /// Triangles submitted to `render_triangles` and `bin_triangles`, and those of drawn lists.
     pub num_processed_triangles: i64,
-    /// Those that face the eye, lie in view and hold a pixel centre.
+    /// Those that face the eye and whose bounding box holds a pixel centre on the screen: counted when they are
+    /// binned, and again in each list that is drawn.
     pub num_rasterized_triangles: i64,
     /// 32x8 tiles in the bounding boxes of such triangles.
     pub num_tiles_traversed: i64,
@@ -217,7 +218,7 @@ pub struct OccludeeStatistics {
     pub num_processed_rectangles: i64,
     /// Triangles submitted to `test_triangles` (those after the first visible one included).
     pub num_processed_triangles: i64,
-    /// Those of them that were compared with the buffer.
+    /// Those of them that were compared with the buffer, up to the first that may be seen.
     pub num_rasterized_triangles: i64,
     /// Tiles that rectangles and triangles were compared with, sub-tile by sub-tile.
     pub num_tiles_traversed: i64,

@@ -73,6 +73,7 @@ kinds! {
     mixed_scale: MixedScale,
     partly_off_screen: PartlyOff,
     far_off_screen: FarOff,
+    wide: Wide,
 }
 
 /// The size at which edges 1/256 pixel high overflow elsewhere.

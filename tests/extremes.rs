@@ -85,3 +85,32 @@ fn a_triangle_that_passes_by_the_only_pixel_is_view_culled() {
     let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
     assert_eq!(answer, Ok(CullingResult::ViewCulled));
 }
+
+/// Found by review: these corners lie so far out that f32 places them some subpixels off, and the triangle
+/// overlaps a corner of the screen by less than that. A query has to know how far off they may be.
+#[test]
+fn a_triangle_with_far_corners_is_seen_at_the_corner_of_the_screen() {
+    let moc = object(UpdateRule::ThreeLayer, 1920, 1080);
+    let triangle = [
+        [-433.0577, 774.12885, 0.0, 2.3610508],
+        [131.28049, -230.7281, 0.0, 0.708027],
+        [120.40197, 213.67404, 0.0, 1.2955712],
+    ];
+    let options = DrawOptions::default();
+    let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &options);
+    assert_eq!(answer, Ok(CullingResult::Visible));
+}
+
+/// An infinite coordinate is counted, and seen, even where two others put the triangle outside of the screen.
+#[test]
+fn what_is_not_finite_is_outside_of_nothing() {
+    let mut moc = object(UpdateRule::ThreeLayer, 64, 48);
+    for bad in [f32::INFINITY, f32::NAN, f32::NEG_INFINITY] {
+        let triangle = [[bad, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [3.0, 1.0, 0.0, 1.0]];
+        let before = moc.statistics().occluders.num_dropped_triangles;
+        moc.render_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+        assert_eq!(moc.statistics().occluders.num_dropped_triangles, before + 1, "{bad}");
+        let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
+        assert_eq!(answer, Ok(CullingResult::Visible), "{bad}");
+    }
+}

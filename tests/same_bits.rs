@@ -79,15 +79,15 @@ const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, Updat
 const GOLDEN: [[[u64; 3]; 3]; 5] = [
     [
         // town
-        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0xa1e8_b330_84fd_38c6],
-        [0xd10c_2774_2c83_9a2c, 0x51e5_8a0e_414a_5165, 0xf304_9f9c_b036_bb5f],
-        [0x279a_aa31_6cfd_57e6, 0xe123_71fc_949c_ce85, 0x7c4b_c517_7695_a2cb],
+        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0x0da7_3ad1_e565_9595],
+        [0xd10c_2774_2c83_9a2c, 0x51e5_8a0e_414a_5165, 0x1e97_6ec9_6ed9_e2a0],
+        [0x279a_aa31_6cfd_57e6, 0xe123_71fc_949c_ce85, 0x9903_5ad1_1de8_8ad8],
     ],
     [
         // terrain
-        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0x195d_af3d_e691_6378],
-        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x0dac_54f3_9dc3_1d9c],
-        [0x2157_b66f_b031_f28c, 0xc941_995d_11ff_0d45, 0x79bf_2b31_4bac_51d2],
+        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0x33a3_797b_a2be_1715],
+        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x81b7_ad1c_e620_865d],
+        [0x2157_b66f_b031_f28c, 0xc941_995d_11ff_0d45, 0x2ee9_94ce_4d56_aec6],
     ],
     [
         // blocks
@@ -97,15 +97,15 @@ const GOLDEN: [[[u64; 3]; 3]; 5] = [
     ],
     [
         // soup
-        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xc0b2_a0ca_622e_ebc3],
-        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x8eba_e675_e72d_7b7b],
-        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0x5b36_ebbe_fb82_2ddb],
+        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0xab15_5e72_5f62_cdf7],
+        [0x3f88_e8c5_7b6e_55ac, 0x7854_16aa_5559_2b24, 0x9cab_5777_ab59_dc17],
+        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0xe700_cd47_1789_d953],
     ],
     [
         // hostile
-        [0xb995_c810_2633_9d73, 0x2e76_abae_8eb4_9ba5, 0x8e89_3d34_579d_c6d2],
-        [0x8b61_6c1b_fa11_30a9, 0x2e76_abae_8eb4_9ba5, 0x5d68_1be0_324b_bb41],
-        [0xc3c9_3141_42a0_f709, 0x2e76_abae_8eb4_9ba5, 0xdc8a_8fd7_947d_f51f],
+        [0xb995_c810_2633_9d73, 0xc20b_9664_5385_8d25, 0xd451_78f8_90b3_085b],
+        [0x8b61_6c1b_fa11_30a9, 0xc20b_9664_5385_8d25, 0x7179_ed34_d0c5_f048],
+        [0xc3c9_3141_42a0_f709, 0xc20b_9664_5385_8d25, 0x2688_3235_3130_592a],
     ],
 ];
 

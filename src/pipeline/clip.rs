@@ -8,8 +8,8 @@
 //! move it by a quarter of a subpixel on the screen, the triangle is refused as if it were not finite.
 
 use super::Facing;
-use super::cull::packed;
-use super::project::{Camera, FARTHEST_W, GUARD_BAND};
+use super::cull::{SHIFT, packed};
+use super::project::{Camera, FARTHEST_W};
 use super::scratch::{CHUNK_VERTICES, Scratch};
 use super::setup::Purpose;
 
@@ -79,8 +79,10 @@ pub(super) fn triangle(purpose: Purpose, camera: &Camera, clip: &[[f32; 3]; 3], 
         corners[k] = Vertex { clip: clip[k].map(f64::from), screen: screen[k] };
     }
     let mut len = 3;
-    let (wide, high) =
-        (f64::from(GUARD_BAND) / f64::from(camera.half_width), f64::from(GUARD_BAND) / f64::from(camera.half_height));
+    let (wide, high) = (
+        f64::from(camera.guard_band) / f64::from(camera.half_width),
+        f64::from(camera.guard_band) / f64::from(camera.half_height),
+    );
     // Inside where a * x + b * y + c * w + d is not negative.
     let planes = [
         [0.0, 0.0, 1.0, -f64::from(camera.near)],
@@ -189,7 +191,11 @@ impl Polygon {
         let (dx2, dy2) = (f64::from(x2) - f64::from(x0), f64::from(y2) - f64::from(y0));
         let area = dx1 * dy2 - dx2 * dy1;
         let area = if facing.swap { -area } else { area };
-        let slack = if purpose == Purpose::Query { dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0 } else { 0.0 };
+        let slack = if purpose == Purpose::Query {
+            f64::from(SHIFT) * (dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0)
+        } else {
+            0.0
+        };
         facing.both || area > -slack
     }
 

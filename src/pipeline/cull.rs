@@ -18,6 +18,8 @@ use crate::statistics::Tally;
 
 /// Farther than this outside of the screen, in 1/256 pixel, a snapped vertex is outside for certain.
 const CLEARLY: f32 = 2.0;
+/// How far, in 1/256 pixel, two snapped vertices of a query may have moved against each other.
+pub(super) const SHIFT: f32 = 4.0;
 /// Relative error of a doubled area in f32, with room: eight roundings.
 const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
 
@@ -80,12 +82,13 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     mesh: &Mesh<'_>,
     last: &mut L,
 ) -> (CullingResult, Tally) {
+    let camera = &if L::PURPOSE == Purpose::Query { camera.for_queries() } else { *camera };
     let reader = Reader::new(s, mesh.vertices, mesh.options.model_to_clip.as_ref());
     let facing = Facing::new(mesh.options.winding, camera);
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, shared: false };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);
@@ -328,9 +331,9 @@ impl<S: Simd> Group<S> {
             let (p, q) = (s.mul(dx1, dy2), s.mul(dx2, dy1));
             let mut error = s.mul(s.add(s.abs(p), s.abs(q)), s.f(AREA_ERROR));
             if query {
-                // Snapping moves each corner by up to half a subpixel either way.
+                // Projection and snapping move the corners against each other.
                 let girth = s.add(s.add(s.abs(dx1), s.abs(dy1)), s.add(s.abs(dx2), s.abs(dy2)));
-                error = s.add(error, s.add(girth, s.f(4.0)));
+                error = s.add(error, s.mul(s.add(girth, s.f(8.0)), s.f(SHIFT)));
             }
             kept = s.and_m(kept, s.lt(s.sub(q, error), p));
         }

@@ -20,8 +20,8 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing };
-    let mut tally = Tally::default();
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, shared: true };
+    let mut tally = Tally { processed: list.len() as u64, ..Tally::default() };
     let mut position = 0;
     while position < list.len() {
         let end = list.len().min(position + CHUNK);

@@ -1,8 +1,9 @@
 //! Vertices to the screen: transform, divide, snap to 1/256 pixel, mark what has to be clipped.
 //!
-//! A vertex is regular when it lies between the near plane and 2^40 and within a guard band of 2^26
-//! subpixels (262,144 pixels) around the screen. Of the others, x becomes a NaN that carries outcodes, so that
-//! a whole triangle outside of one plane still dies in a vector.
+//! A vertex is regular when it lies between the near plane and 2^40 and within a guard band around the screen:
+//! some 250,000 pixels for draws, whose coverage is exact for whatever snapped coordinates come out; 16,384 pixels
+//! for queries, which have to bound where the true vertex is, and so need f32 to be finer than a subpixel. Of the
+//! others, x becomes a NaN that carries outcodes, so that a whole triangle outside of one plane still dies in a vector.
 //!
 //! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the
 //! denormal numbers: the bits do not depend on whether the processor flushes those.
@@ -19,9 +20,11 @@ use crate::{VertexLayout, YAxis};
 pub(super) const NEAREST_W: f32 = 1.0 / (1 << 30) as f32;
 /// Occluders farther than this are dropped; occludees count as being there.
 pub(super) const FARTHEST_W: f32 = (1_u64 << 40) as f32;
-/// The guard band: how far from the screen's centre a vertex may lie, in 1/256 pixel. With the largest
+/// The guard band of draws: how far from the screen's centre a vertex may lie, in 1/256 pixel. With the largest
 /// screen's centre added it stays below 2^26.
 pub(super) const GUARD_BAND: f32 = ((1 << 26) - (1 << 21)) as f32;
+/// The guard band of queries. Four roundings of numbers below 2^23 and the snap move a vertex by less than 1.6 subpixels.
+const QUERY_GUARD_BAND: f32 = (1 << 22) as f32;
 
 /// Outcodes of a vertex, the low bits of a marked x.
 pub(super) mod outcode {
@@ -46,6 +49,8 @@ pub(crate) struct Camera {
     pub row_scale: f32,
     /// The near plane, at least [`NEAREST_W`].
     pub near: f32,
+    /// How far from the screen's centre a vertex may lie, in 1/256 pixel.
+    pub guard_band: f32,
     /// Is the near plane closer than can be projected? Then a query may not rely on what clipping removes.
     pub near_is_raised: bool,
 }
@@ -58,8 +63,14 @@ impl Camera {
             half_height,
             row_scale: if y_axis == YAxis::Down { -half_height } else { half_height },
             near: near.max(NEAREST_W),
+            guard_band: GUARD_BAND,
             near_is_raised: near < NEAREST_W,
         }
+    }
+
+    /// The same for a query.
+    pub fn for_queries(self) -> Self {
+        Self { guard_band: QUERY_GUARD_BAND, ..self }
     }
 
     pub fn rows_run_down(&self) -> bool {
@@ -98,7 +109,7 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let across = s.mul(s.mul(x, z), s.f(camera.half_width));
     let down = s.mul(s.mul(y, z), s.f(camera.row_scale));
     let in_range = s.and_m(s.le(s.f(camera.near), w), s.le(w, s.f(FARTHEST_W)));
-    let in_band = s.and_m(s.le(s.abs(across), s.f(GUARD_BAND)), s.le(s.abs(down), s.f(GUARD_BAND)));
+    let in_band = s.and_m(s.le(s.abs(across), s.f(camera.guard_band)), s.le(s.abs(down), s.f(camera.guard_band)));
     let regular = s.and_m(in_range, in_band);
     let column = s.to_f(s.round(s.add(across, s.f(camera.half_width))));
     let row = s.to_f(s.round(s.add(down, s.f(camera.half_height))));
@@ -109,6 +120,10 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
     marks = s.or(marks, s.or(bit_where(s, s.lt(x, minus_w), outcode::LEFT), bit_where(s, s.lt(w, x), outcode::RIGHT)));
     marks = s.or(marks, s.or(bit_where(s, s.lt(y, minus_w), outcode::BELOW), bit_where(s, s.lt(w, y), outcode::ABOVE)));
+    // What is not finite is outside of nothing: it is counted, or seen, where triangles are clipped.
+    let largest = s.max(s.max(s.abs(x), s.abs(y)), s.abs(w));
+    let finite = s.and_m(s.le(largest, s.f(f32::MAX)), s.and_m(s.eq(x, x), s.eq(y, y)));
+    marks = s.select_i(finite, marks, s.i(outcode::MARK as i32));
     [s.select(regular, column, s.float_of_bits(marks)), s.select(regular, row, s.f(0.0)), z]
 }
 

@@ -1,5 +1,5 @@
-//! What a call needs for a moment, on its stack: the projected vertices of one chunk of triangles, the
-//! triangles that survive, and one vector of them set up. Nothing is allocated, nothing depends on the
+//! What a call needs for a moment, on its stack: the projected vertices of one chunk of triangles and the
+//! triangles that survive. Nothing is allocated, nothing depends on the
 //! mesh's size, and calls from several threads do not meet.
 
 use core::mem::MaybeUninit;

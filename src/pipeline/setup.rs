@@ -124,6 +124,8 @@ pub(super) struct Setup<'a, S> {
     pub purpose: Purpose,
     pub buffer: &'a Buffer,
     pub facing: Facing,
+    /// Other threads may be drawing elsewhere in the buffer: none of it is looked at.
+    pub shared: bool,
 }
 
 /// Sets up the first `n` of the survivors at `survivors`.
@@ -139,7 +141,7 @@ pub(super) unsafe fn set_up<S: Simd>(
     n: usize,
     batch: &mut Batch,
 ) -> Alive {
-    let Setup { s, purpose, buffer, facing } = setup;
+    let Setup { s, purpose, buffer, facing, shared } = setup;
     let query = purpose == Purpose::Query;
     // SAFETY: the caller's contract.
     let packed = unsafe { s.load_i(survivors) };
@@ -228,7 +230,7 @@ pub(super) unsafe fn set_up<S: Simd>(
     let nearest = s.mul(nearest, s.f(1.0 + VERTEX_MARGIN));
     let (across, down) = (s.sub_i(tile_x1, tile_x0), s.sub_i(tile_y1, tile_y0));
     let few = s.and_not_m(s.or_m(s.gt_i(across, s.i(1)), s.gt_i(down, s.i(1))), alive);
-    if s.mask_bits(few) != 0 {
+    if !shared && s.mask_bits(few) != 0 {
         // SAFETY: lanes that are alive name tiles of the buffer, the others name the first.
         let least = unsafe {
             let upper = s.min(least_at(s, buffer, few, tile_x0, tile_y0), least_at(s, buffer, few, tile_x1, tile_y0));

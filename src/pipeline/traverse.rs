@@ -102,6 +102,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
     let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is an array of `MaybeUninit`.
     let lists = unsafe { lists.assume_init_mut() };
+    let whole = clip == buffer.all_tiles();
     let mut todo = alive.lanes;
     let (mut group, mut row) = (0, 0);
     let mut visited = Visited::default();
@@ -141,7 +142,10 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let (lane, x, y) = place(batch, word);
             let (begin, end) = (x.max(clip.x0), (batch.tile_x1[lane] + 1).min(x + TILES).min(clip.x1));
             // SAFETY: a tile of the triangle's box is a tile of the buffer; after the last there is room for a vector.
-            let least = unsafe { t.load_f(buffer.least().add((y * buffer.tiles_w() + x) as usize)) };
+            let least = unsafe {
+                let first = buffer.least().add((y * buffer.tiles_w() + x) as usize);
+                if whole { t.load_f(first) } else { some_of(t, first, begin.saturating_sub(x), end.saturating_sub(x)) }
+            };
             let open = t.mask_bits(S::open(t, least, t.f(batch.nearest[lane])));
             let below = |tile: u32| (1_u32 << tile.saturating_sub(x).min(TILES)) - 1;
             let inside = below(end) & !below(begin);
@@ -207,6 +211,23 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             }
         }
     }
+}
+
+/// The floats from `begin` to before `end` from `p` on, and nothing else: beside them another thread may be writing.
+///
+/// # Safety
+/// They can be read.
+#[inline(always)]
+unsafe fn some_of<T: Simd>(t: T, p: *const f32, begin: u32, end: u32) -> T::F {
+    let mut lanes = [0.0; SUB_TILES];
+    let mut k = begin;
+    while k < end {
+        // SAFETY: the caller's contract.
+        lanes[k as usize] = unsafe { *p.add(k as usize) };
+        k += 1;
+    }
+    // SAFETY: the array holds a vector.
+    unsafe { t.load_f(lanes.as_ptr()) }
 }
 
 /// Lane, first tile and row of tiles of an entry of the list of rows.

@@ -8,7 +8,7 @@ use super::{Apart, Job, Simd};
 pub(super) struct Avx2(());
 
 /// # Safety
-/// The processor has AVX2.
+/// The processor has AVX2, BMI1, BMI2, LZCNT and POPCNT.
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()), Avx2(()))

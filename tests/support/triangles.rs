@@ -21,6 +21,8 @@ pub enum Kind {
     MixedScale,
     PartlyOff,
     FarOff,
+    /// Corners on the screen and up to 240,000 pixels from it, where f32 still holds every eighth unit.
+    Wide,
 }
 
 /// How far from the middle of the screen, in units, a vertex may lie for its projection to be exact.
@@ -84,6 +86,13 @@ fn corners(kind: Kind, (w, h): (usize, usize)) -> BoxedStrategy<[(i64, i64); 3]>
                 .boxed()
         }
         Kind::PartlyOff => three(-mx..=2 * mx, -my..=2 * my).boxed(),
+        Kind::Wide => {
+            let axis = |size: i64| {
+                let far = (-240_000 * UNIT / 8..=240_000 * UNIT / 8).prop_map(|v| v * 8);
+                prop_oneof![2 => 0..=size, 3 => far].boxed()
+            };
+            three(axis(mx), axis(my)).boxed()
+        }
         Kind::FarOff => three(-32_000 * UNIT..=32_000 * UNIT, -32_000 * UNIT..=32_000 * UNIT).boxed(),
     }
 }
@@ -92,7 +101,8 @@ fn corners(kind: Kind, (w, h): (usize, usize)) -> BoxedStrategy<[(i64, i64); 3]>
 pub fn of_kind(kind: Kind, size: (usize, usize)) -> BoxedStrategy<Triangle> {
     let keep = move |v: i64, size: usize| {
         let (middle, reach) = (UNIT / 2 * size as i64, reach(size));
-        v.clamp(middle - reach, middle + reach)
+        let wide = kind == Kind::Wide && size.is_power_of_two();
+        if wide { v } else { v.clamp(middle - reach, middle + reach) }
     };
     (corners(kind, size), [0..=6i32, 0..=6, 0..=6])
         .prop_map(move |(p, k)| {

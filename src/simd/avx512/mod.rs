@@ -13,7 +13,7 @@ pub(super) struct Avx512Tile(());
 pub(super) struct Avx512Wide(());
 
 /// # Safety
-/// The processor has AVX-512 F, BW, DQ and VL.
+/// The processor has AVX-512 F, BW, DQ and VL, BMI1, BMI2, LZCNT and POPCNT.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx512Tile(()), Avx512Wide(()))
