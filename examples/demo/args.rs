@@ -21,19 +21,19 @@ pub struct Args {
     pub look: Option<Vec3>,
 
     /// Which way is up
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, default_value = "0,1,0")]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, default_value = "0,1,0")]
     pub up: Vec3,
 
     /// Vertical field of view in degrees, from 1 to 170
-    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, value_parser = field_of_view)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, value_parser = field_of_view, allow_negative_numbers = true)]
     pub fov: f32,
 
     /// Distance of the near plane (default: a small part of the scene's size)
-    #[arg(long, value_name = "DISTANCE", value_parser = positive)]
+    #[arg(long, value_name = "DISTANCE", value_parser = positive, allow_negative_numbers = true)]
     pub near: Option<f32>,
 
     /// Width and height of the occlusion buffer in pixels, each from 1 to 16384
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, default_value = "1920x1080")]
     pub size: (u32, u32),
 
     /// How the buffer takes in triangles
@@ -45,10 +45,10 @@ pub struct Args {
     pub isa: Option<Isa>,
 
     /// Splits meshes of more triangles than this into pieces (default: for about a thousand objects)
-    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "TRIANGLES", value_parser = count, allow_negative_numbers = true)]
     pub split: Option<u32>,
 
-    /// Where the program, the scene and the pictures are written
+    /// Where the pictures are written
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
 }
@@ -91,6 +91,14 @@ fn vector(text: &str) -> Result<Vec3, String> {
     }
 }
 
+fn direction(text: &str) -> Result<Vec3, String> {
+    vector(text)?.try_normalize().ok_or("a direction is expected, so one of the numbers must differ from 0".into())
+}
+
+fn count(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| *n > 0).ok_or("a whole number above 0 is expected".into())
+}
+
 fn size(text: &str) -> Result<(u32, u32), String> {
     let part = |n: &str| n.parse::<u32>().ok().filter(|n| (1..=16_384).contains(n));
     let (width, height) = text.split_once(['x', 'X']).ok_or("a size such as 1920x1080 is expected")?;
@@ -119,11 +127,17 @@ mod tests {
             ["--size", "0x10"],
             ["--size", "99999x10"],
             ["--fov", "180"],
+            ["--up", "0,0,0"],
             ["--near", "0"],
             ["--split", "0"],
             ["--isa", "mmx"],
         ] {
             assert!(Args::try_parse_from(["demo", bad[0], bad[1]]).is_err(), "{bad:?} is accepted");
+        }
+        // What looks like an option is taken for the value that it is.
+        for (option, value) in [("--near", "-1"), ("--fov", "-30"), ("--split", "-5"), ("--size", "-8x4")] {
+            let error = Args::try_parse_from(["demo", option, value]).unwrap_err().to_string();
+            assert!(error.contains(option) && error.contains("expected") || error.contains("pixels"), "{error}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_to_mat4};
 use glam::{Mat4, Vec3};
 
+use crate::Result;
 use crate::args::Args;
 use crate::raster::{NOTHING, ZBuffer};
 use crate::scene::Scene;
@@ -22,13 +23,12 @@ pub struct Camera {
 
 impl Camera {
     /// The camera that the arguments ask for; what they leave open is chosen for the scene.
-    pub fn new(args: &Args, scene: &Scene) -> Self {
+    pub fn new(args: &Args, scene: &Scene) -> Result<Self> {
         let (lo, hi) = scene.bounds();
-        let up = args.up.try_normalize().unwrap_or(Vec3::Y);
         let mut camera = Self {
             eye: lo,
             look: (lo + hi) / 2.0,
-            up,
+            up: args.up,
             fov: args.fov.to_radians(),
             near: args.near.unwrap_or((hi - lo).length() * 2e-4),
             aspect: args.size.0 as f32 / args.size.1 as f32,
@@ -44,15 +44,23 @@ impl Camera {
         if camera.look == camera.eye {
             camera.look += camera.sideways();
         }
-        camera
+        if !camera.is_upright() {
+            return Err(
+                "the camera looks along --up: give another direction as --up, or another --eye or --look".into()
+            );
+        }
+        Ok(camera)
+    }
+
+    /// Is up another direction than that of the view? Places too far apart for a float say no as well.
+    fn is_upright(&self) -> bool {
+        (self.look - self.eye).normalize_or_zero().cross(self.up).length() >= 1e-3
     }
 
     /// From the world to clip space: w is the distance along the view, z is the near distance.
     pub fn clip_from_world(&self) -> Mat4 {
         let direction = (self.look - self.eye).normalize();
-        // Looking straight up or down, any other direction may be up.
-        let up = if direction.cross(self.up).length() < 1e-3 { self.sideways() } else { self.up };
-        perspective_infinite_reverse(self.fov, self.aspect, self.near) * look_to_mat4(self.eye, direction, up)
+        perspective_infinite_reverse(self.fov, self.aspect, self.near) * look_to_mat4(self.eye, direction, self.up)
     }
 
     /// Some direction at a right angle to up.
@@ -89,7 +97,7 @@ impl Camera {
         let mut chosen = (at(-0.6, 0.9, 1.6), (lo + hi) / 2.0);
         for (eye, ahead) in places {
             (self.eye, self.look) = (eye, look.unwrap_or(ahead));
-            let score = if self.eye == self.look { 0.0 } else { self.score(scene) };
+            let score = if self.is_upright() { self.score(scene) } else { 0.0 };
             if score > best {
                 (best, chosen) = (score, (self.eye, self.look));
             }
@@ -139,4 +147,25 @@ pub fn in_view(lo: Vec3, hi: Vec3, clip: &Mat4) -> bool {
 
 pub fn box_corners(lo: Vec3, hi: Vec3) -> [Vec3; 8] {
     std::array::from_fn(|i| Vec3::select(glam::BVec3::new(i & 1 == 0, i & 2 == 0, i & 4 == 0), lo, hi))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn a_view_along_up_is_refused() {
+        let mut scene = Scene::default();
+        let mut mesh = Mesh::default();
+        mesh.cuboid(Vec3::ZERO, Vec3::ONE, Vec3::ONE);
+        scene.add(mesh, true, false);
+        let camera = |eye, up| Camera::new(&Args::parse_from(["demo", "a.obj", "--eye", eye, "--up", up]), &scene);
+        assert!(camera("0.5,9,0.5", "0,1,0").unwrap_err().to_string().contains("--up"));
+        assert!(camera("0.5,9,0.5", "0,0,2").is_ok());
+        assert!(camera("0.5,9,0.6", "0,1,0").is_ok());
+        assert!(camera("3e38,3e38,3e38", "0,1,0").is_err());
+    }
 }

@@ -9,6 +9,7 @@ use gltf::mesh::Mode;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::Result;
+use crate::gltf_buffers;
 use crate::scene::{Mesh, Scene};
 
 /// Of what has no colour of its own.
@@ -59,8 +60,11 @@ fn obj(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
 fn gltf(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
     let mut bytes = Vec::new();
     reader.read_to_end(&mut bytes)?;
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes)?;
-    let buffers = gltf::import_buffers(&document, Some(folder), blob)?;
+    let gltf::Gltf { document, blob } = match gltf::Gltf::from_slice(&bytes) {
+        Err(gltf::Error::Deserialize(e)) => return Err(format!("not a glTF file: {e}").into()),
+        other => other?,
+    };
+    let buffers = gltf_buffers::read(&document, folder, blob)?;
 
     let mut scene = Scene::default();
     let roots = document.default_scene().or_else(|| document.scenes().next()).ok_or("there is no scene in it")?;
@@ -70,7 +74,7 @@ fn gltf(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
         let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
         nodes.extend(node.children().map(|n| (n, world)));
         for primitive in node.mesh().iter().flat_map(|m| m.primitives()) {
-            let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(|data| &data[..]));
+            let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
             let Some(positions) = reader.read_positions() else { continue };
             let positions: Vec<Vec3> = positions.map(|p| world.transform_point3(p.into())).collect();
             let indices: Vec<u32> = match reader.read_indices() {
@@ -178,6 +182,14 @@ mod tests {
         fs::write(folder.path().join("two.bin"), gltf_buffer()).unwrap();
         fs::write(&path, gltf_text(r#","uri":"two.bin""#)).unwrap();
         check_gltf(&load(&path).unwrap());
+
+        fs::write(folder.path().join("two of them.bin"), gltf_buffer()).unwrap();
+        fs::write(&path, gltf_text(r#","uri":"two%20of%20them.bin""#)).unwrap();
+        check_gltf(&load(&path).unwrap());
+
+        let data = "AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIAAAA=";
+        fs::write(&path, gltf_text(&format!(r#","uri":"data:application/octet-stream;base64,{data}""#))).unwrap();
+        check_gltf(&load(&path).unwrap());
     }
 
     #[test]
@@ -214,10 +226,20 @@ mod tests {
         let path = |name: &str| folder.path().join(name);
         fs::write(path("empty.obj"), "v 0 0 0\n").unwrap();
         fs::write(path("bad.glb"), b"glTF\x02\0\0\0").unwrap();
+        fs::write(path("text.gltf"), "This is no scene.").unwrap();
+        fs::write(path("lost.gltf"), gltf_text(r#","uri":"lost.bin""#)).unwrap();
+        fs::write(path("short.gltf"), gltf_text(r#","uri":"data:;base64,AAAA""#)).unwrap();
+        fs::write(path("remote.gltf"), gltf_text(r#","uri":"https://example.org/a.bin""#)).unwrap();
+        fs::write(path("bare.gltf"), gltf_text("")).unwrap();
         fs::write(path("mesh.fbx"), "").unwrap();
         for (name, reason) in [
             ("empty.obj", "no triangles"),
             ("bad.glb", "bad.glb"),
+            ("text.gltf", "not a glTF file"),
+            ("lost.gltf", "cannot read"),
+            ("short.gltf", "3 of 44 bytes"),
+            ("remote.gltf", "https"),
+            ("bare.gltf", "bare.gltf"),
             ("mesh.fbx", "none of"),
             ("absent.obj", "cannot open"),
         ] {

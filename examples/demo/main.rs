@@ -5,7 +5,9 @@
 
 mod args;
 mod camera;
+mod compiler;
 mod exchange;
+mod gltf_buffers;
 mod image;
 mod load;
 #[path = "../../tests/native/mod.rs"]
@@ -18,9 +20,11 @@ mod shapes;
 mod split;
 mod town;
 
+use std::fmt::Display;
+use std::io::Write;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
-use std::{fs, path};
+use std::{fs, io, path};
 
 use clap::Parser;
 use indicatif::ProgressBar;
@@ -35,7 +39,7 @@ fn main() -> ExitCode {
     match run(&Args::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {
-            eprintln!("demo: {e}");
+            let _ = writeln!(io::stderr(), "demo: {e}");
             ExitCode::FAILURE
         }
     }
@@ -51,29 +55,34 @@ fn run(args: &Args) -> Result<()> {
         None => town::generate(),
     };
     let name = args.scene.as_ref().map_or("a generated town".into(), |p| p.display().to_string());
-    println!("{name}: {} objects, {} triangles", scene.objects.len(), scene.num_triangles());
+    say(format_args!("{name}: {} objects, {} triangles\n", scene.objects.len(), scene.num_triangles()));
 
-    let camera = step("choosing a camera", || Ok(Camera::new(args, &scene)))?;
-    let list = |v: glam::Vec3| v.to_array().map(|n| format!("{n:.2}")).join(",");
-    println!("camera: --eye {} --look {}", list(camera.eye), list(camera.look));
+    let camera = step("choosing a camera", || Camera::new(args, &scene))?;
+    let list = |v: glam::Vec3| v.to_array().map(|n| n.to_string()).join(",");
+    say(format_args!("camera: --eye {} --look {}\n", list(camera.eye), list(camera.look)));
 
     fs::create_dir_all(&args.out).map_err(|e| format!("cannot make {}: {e}", args.out.display()))?;
-    let out = path::absolute(&args.out)?;
+    // What the program needs goes when the pictures are there. Not every system runs programs in its folder for
+    // temporary files.
+    let folder = tempfile::tempdir_in(path::absolute(&args.out)?)?;
+    let out = folder.path();
     let (scene_file, result_file) = (out.join("scene.bin"), out.join("result.bin"));
     exchange::write_scene(&scene_file, &scene, &camera, args.size)?;
     let program = step("compiling cpp-examples/demo.cpp", || {
+        compiler::find(out)?;
         Ok(native::build(&native::Program {
             source: &native::root().join("cpp-examples/demo.cpp"),
-            out: &out,
+            out,
             link: native::Link::Static,
             defines: args.rule.define().as_slice(),
             flags: &[],
-        })?)
+        })
+        .map_err(compiler::complaint)?)
     })?;
     let mut command = Command::new(program);
     command.arg(&scene_file).arg(&result_file);
     command.args(args.isa.map(|isa| (isa as i32).to_string()));
-    print!("{}", native::run(&mut command)?);
+    say(native::run(&mut command)?);
     let outcome = exchange::read_outcome(&result_file, scene.objects.len(), args.size)?;
 
     let wrong = step("checking against a plain z-buffer", || {
@@ -81,7 +90,7 @@ fn run(args: &Args) -> Result<()> {
         let size = (args.size.0 as usize, args.size.1 as usize);
         Ok(raster::falsely_hidden(&scene.objects, &hidden, size, &camera.clip_from_world(), camera.near))
     })?;
-    println!("falsely culled: {wrong} (objects with a visible pixel in a plain z-buffer)");
+    say(format_args!("falsely culled: {wrong} (objects with a visible pixel in a plain z-buffer)\n"));
 
     let (depth_file, culled_file) = (args.out.join("depth.png"), args.out.join("culled.png"));
     step("drawing the pictures", || {
@@ -89,8 +98,13 @@ fn run(args: &Args) -> Result<()> {
         picture::depth(&outcome, args.size, width, height).save(&depth_file)?;
         picture::compose(&scene, &camera, &outcome, args.size).save(&culled_file)
     })?;
-    println!("pictures: {} and {}", depth_file.display(), culled_file.display());
+    say(format_args!("pictures: {} and {}\n", depth_file.display(), culled_file.display()));
     if wrong > 0 { Err("something visible was culled".into()) } else { Ok(()) }
+}
+
+/// Prints. The pictures are drawn even when nobody reads what is said.
+fn say(text: impl Display) {
+    let _ = write!(io::stdout(), "{text}");
 }
 
 /// Runs something that may take a while, and says so meanwhile.
