@@ -217,7 +217,8 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
-    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the same depth?
+    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the same
+    /// depth?
     ///
     /// Every pixel that a triangle touches counts, not only those whose centre it covers. `Visible` is
     /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer

@@ -177,7 +177,8 @@ impl Default for VertexLayout {
 }
 
 /// A rectangle of pixels: `min` inside, `max` outside. x in multiples of 32, y of 8; a `max` may also
-/// be the width or height of the buffer, as it is or rounded up to whole tiles. Rows are counted in the object's y direction.
+/// be the width or height of the buffer, as it is or rounded up to whole tiles. Rows are counted in
+/// the object's y direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(C)]
 pub struct ScissorRect {

@@ -23,7 +23,8 @@ pub(super) const FARTHEST_W: f32 = (1_u64 << 40) as f32;
 /// The guard band of draws: how far from the screen's centre a vertex may lie, in 1/256 pixel. With the largest
 /// screen's centre added it stays below 2^26.
 pub(super) const GUARD_BAND: f32 = ((1 << 26) - (1 << 21)) as f32;
-/// The guard band of queries. Four roundings of numbers below 2^23 and the snap move a vertex by less than 1.6 subpixels.
+/// The guard band of queries. Four roundings of numbers below 2^23 and the snap move a vertex by less than 1.6
+/// subpixels.
 const QUERY_GUARD_BAND: f32 = (1 << 22) as f32;
 
 /// Outcodes of a vertex, the low bits of a marked x.

@@ -374,7 +374,8 @@ unsafe fn least_at<S: Simd>(s: S, buffer: &Buffer, m: S::M, x: S::I, y: S::I) ->
     unsafe { s.gather(buffer.least(), s.select_i(m, s.add_i(row, x), s.i(0))) }
 }
 
-/// Constant part of an edge's event as the left bound of a row and as the right one, and its slope. `dy` is not negative.
+/// Constant part of an edge's event as the left bound of a row and as the right one, and its slope. `dy` is not
+/// negative.
 #[inline(always)]
 fn edge<S: Simd>(s: S, query: bool, [x, y]: [S::D; 2], [dx, dy]: [S::D; 2]) -> [S::D; 3] {
     // A quarter stands for zero: such an edge is put nowhere by the caller.

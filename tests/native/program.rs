@@ -32,6 +32,7 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
     let target = env!("MOC_TARGET");
     let mut build = cc::Build::new();
     build.cpp(cpp).target(target).host(target).opt_level(2).debug(false).cargo_metadata(false).out_dir(program.out);
+    build.cargo_warnings(false);
     build.warnings(true).extra_warnings(true).static_crt(false);
     build.std(if cpp { if cfg!(target_env = "msvc") { "c++14" } else { "c++11" } } else { "c11" });
     let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
@@ -68,10 +69,16 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
 
 /// Runs a command to its end; returns what it printed, or why it failed.
 pub fn run(command: &mut Command) -> Result<String, String> {
-    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
+    let output = command.output().map_err(|e| format!("{}: {e}", command.get_program().display()))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     if output.status.success() {
         return Ok(text(&output.stdout));
     }
-    Err(format!("{command:?}\n{}{}{}", text(&output.stdout), text(&output.stderr), output.status))
+    Err(format!(
+        "{}\n{}{}{}",
+        command.get_program().display(),
+        text(&output.stdout),
+        text(&output.stderr),
+        output.status
+    ))
 }
