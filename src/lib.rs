@@ -1,4 +1,19 @@
 //! CPU occlusion culling on a masked hierarchical depth buffer.
+//!
+//! Draw a scene's large occluders into a [`MaskedOcclusionCulling`], then ask of each object, by a rectangle or
+//! by its triangles, whether any of it could be seen. An answer of [`CullingResult::Occluded`] is certain; any
+//! doubt is answered [`CullingResult::Visible`].
+//!
+//! The buffer keeps no depth a pixel. Of each sub-tile of 8x4 pixels it keeps a reference depth, which no pixel is
+//! behind, and one or two working layers, each a depth and a mask of the pixels that it speaks for; triangles are
+//! taken in by one of three [`UpdateRule`]s (Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion
+//! Culling", HPG 2016). Depth is 1/w: 0 is infinitely far, larger is nearer.
+//!
+//! Coverage is exact: vertices are snapped to 1/256 pixel, and a pixel is covered when its centre is, by the top-left
+//! rule. Every instruction set (see [`Implementation`]) gives the same bits.
+//!
+//! The way of a triangle is told in `src/pipeline/mod.rs`, the memory's layout in `src/buffer/mod.rs`, the vector
+//! layer in `src/simd/mod.rs`. The C interface is in [`capi`]; C and C++ include what is in `include/`.
 #![warn(missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
 

@@ -8,8 +8,7 @@
 //! move it by a quarter of a subpixel on the screen, the triangle is refused as if it were not finite.
 
 use super::Facing;
-use super::cull::{SHIFT, packed};
-use super::project::{Camera, FARTHEST_W};
+use super::project::{Camera, FARTHEST_W, SHIFT};
 use super::scratch::{CHUNK_VERTICES, Scratch};
 use super::setup::Purpose;
 
@@ -177,7 +176,7 @@ impl Polygon {
             if self.faces(purpose, facing, k) && self.on_screen(camera, k) {
                 in_view = true;
                 let corner = |k: usize| (first + k) as u32;
-                scratch.survivors[*survivors].write(packed(facing, [corner(0), corner(k), corner(k + 1)]));
+                scratch.survivors[*survivors].write(facing.pack([corner(0), corner(k), corner(k + 1)]));
                 *survivors += 1;
             }
         }

@@ -3,13 +3,12 @@
 //! A mesh is taken in chunks whose vertices fit in the scratch, each projected once. Where a chunk's indices are
 //! strewn too widely for that, its corners are projected one triangle at a time.
 
+use super::batch::Batch;
 use super::clip::{self, Clipped};
 use super::last_step::LastStep;
-use super::project::{Camera, Reader, outcode, project};
-use super::scratch::{
-    CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch, pack,
-};
-use super::setup::{Batch, Purpose, Setup, set_up};
+use super::project::{Camera, Reader, SHIFT, bit_where, outcode, project};
+use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch};
+use super::setup::{Purpose, Setup, set_up};
 use super::{Facing, Mesh};
 use crate::CullingResult;
 use crate::buffer::Buffer;
@@ -18,8 +17,6 @@ use crate::statistics::Tally;
 
 /// Farther than this outside of the screen, in 1/256 pixel, a snapped vertex is outside for certain.
 const CLEARLY: f32 = 2.0;
-/// How far, in 1/256 pixel, two snapped vertices of a query may have moved against each other.
-pub(super) const SHIFT: f32 = 4.0;
 /// Relative error of a doubled area in f32, with room: eight roundings.
 const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
 
@@ -373,21 +370,10 @@ impl<S: Simd> Group<S> {
     }
 }
 
-#[inline(always)]
-pub(super) fn bit_where<S: Simd>(s: S, m: S::M, bit: u32) -> S::I {
-    s.select_i(m, s.i(bit as i32), s.i(0))
-}
-
 /// Does a pixel's centre, of `size` pixels, lie from `min` to before `max`?
 #[inline(always)]
 fn holds_centre<S: Simd>(s: S, min: S::F, max: S::F, size: u32) -> S::M {
     let first = s.sra::<8>(s.add_i(s.round(min), s.i(127)));
     let end = s.sra::<8>(s.add_i(s.round(max), s.i(127)));
     s.gt_i(s.min_i(end, s.i(size as i32)), s.max_i(first, s.i(0)))
-}
-
-/// Packs corners as survivors have them.
-#[inline(always)]
-pub(super) fn packed(facing: Facing, [a, b, c]: [u32; 3]) -> u32 {
-    if facing.swap { pack([a, c, b]) } else { pack([a, b, c]) }
 }

@@ -4,7 +4,7 @@
 //! once. With coordinates up to 2^26 what remains, that rounding and those of the slope, of its product with the
 //! row and of the sum, is below half of the tolerance wherever the event falls on the screen.
 
-use super::setup::Batch;
+use super::batch::Batch;
 
 /// Far more than any screen, in pixels.
 const NOWHERE: f64 = 1e30;

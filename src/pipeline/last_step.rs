@@ -3,8 +3,9 @@
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
+use super::batch::Batch;
 use super::edges::bits;
-use super::setup::{Alive, Batch, Purpose};
+use super::setup::{Alive, Purpose};
 use super::traverse::{Lists, TileStep, Visited, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;

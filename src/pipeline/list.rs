@@ -1,10 +1,11 @@
 //! Triangle lists back into the stream: projected already, but from memory that the caller could write to.
 
 use super::Facing;
+use super::batch::Batch;
 use super::last_step::LastStep;
 use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::scratch::{CHUNK_VERTICES, Scratch, pack};
-use super::setup::{Batch, Setup, set_up};
+use super::setup::{Setup, set_up};
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::buffer::Buffer;
 use crate::simd::Simd;

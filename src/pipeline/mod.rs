@@ -15,6 +15,7 @@
 //! All that reaches the buffer is computed with the same operations in the same order on every
 //! instruction set, sub-tile by sub-tile; how many triangles are set up together changes nothing.
 
+mod batch;
 mod clip;
 mod cull;
 mod edges;
@@ -57,6 +58,12 @@ impl Facing {
         // Counter-clockwise with y up looks the same on the screen, where rows may run downwards.
         let front_is_counter_clockwise = winding != BackfaceWinding::CounterClockwise;
         Self { swap: front_is_counter_clockwise == camera.rows_run_down(), both: winding == BackfaceWinding::None }
+    }
+
+    /// The local numbers of a triangle's corners as a survivor has them.
+    #[inline(always)]
+    fn pack(self, [a, b, c]: [u32; 3]) -> u32 {
+        scratch::pack(if self.swap { [a, c, b] } else { [a, b, c] })
     }
 }
 

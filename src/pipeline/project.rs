@@ -10,7 +10,6 @@
 
 use glam::Mat4;
 
-use super::cull::bit_where;
 use super::scratch::Scratch;
 use crate::simd::Simd;
 use crate::vertices::VertexSource;
@@ -26,6 +25,9 @@ pub(super) const GUARD_BAND: f32 = ((1 << 26) - (1 << 21)) as f32;
 /// The guard band of queries. Four roundings of numbers below 2^23 and the snap move a vertex by less than 1.6
 /// subpixels.
 const QUERY_GUARD_BAND: f32 = (1 << 22) as f32;
+
+/// How far, in 1/256 pixel, two snapped vertices of a query may have moved against each other.
+pub(super) const SHIFT: f32 = 4.0;
 
 /// Outcodes of a vertex, the low bits of a marked x.
 pub(super) mod outcode {
@@ -126,6 +128,12 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let finite = s.and_m(s.le(largest, s.f(f32::MAX)), s.and_m(s.eq(x, x), s.eq(y, y)));
     marks = s.select_i(finite, marks, s.i(outcode::MARK as i32));
     [s.select(regular, column, s.float_of_bits(marks)), s.select(regular, row, s.f(0.0)), z]
+}
+
+/// A bit in the lanes of a mask.
+#[inline(always)]
+pub(super) fn bit_where<S: Simd>(s: S, m: S::M, bit: u32) -> S::I {
+    s.select_i(m, s.i(bit as i32), s.i(0))
 }
 
 /// How a call reads its vertices: layout and matrix, ready for vectors.

@@ -12,7 +12,8 @@
 
 use core::mem::MaybeUninit;
 
-use super::setup::{Alive, Batch};
+use super::batch::Batch;
+use super::setup::Alive;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 

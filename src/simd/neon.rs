@@ -2,6 +2,7 @@
 
 use core::arch::aarch64::*;
 
+use super::compress::FOUR_LANES;
 use super::pair::Pair;
 use super::{Apart, Job, Simd};
 
@@ -11,30 +12,6 @@ pub(super) struct Neon(());
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
     // Every aarch64 processor that Rust's std supports has NEON: the token needs no more proof.
     job.run(Pair(Neon(())), Pair(Neon(())))
-}
-
-/// For each mask, the bytes of the lanes that it keeps, first to last.
-static COMPRESS: [[u8; 16]; 16] = compress_table();
-
-const fn compress_table() -> [[u8; 16]; 16] {
-    let mut table = [[0; 16]; 16];
-    let mut mask = 0;
-    while mask < 16 {
-        let (mut lane, mut n) = (0, 0);
-        while lane < 4 {
-            if mask >> lane & 1 == 1 {
-                let mut byte = 0;
-                while byte < 4 {
-                    table[mask][4 * n + byte] = (4 * lane + byte) as u8;
-                    byte += 1;
-                }
-                n += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
 }
 
 impl Simd for Neon {
@@ -134,7 +111,7 @@ impl Simd for Neon {
         // SAFETY: the token, and the caller's contract.
         unsafe {
             let bits = self.mask_bits(m) as usize;
-            let order = vld1q_u8(COMPRESS.as_ptr().add(bits).cast());
+            let order = vld1q_u8(FOUR_LANES.as_ptr().add(bits).cast());
             vst1q_u8(p.cast(), vqtbl1q_u8(vreinterpretq_u8_s32(x), order));
             bits.count_ones() as usize
         }

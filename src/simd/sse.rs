@@ -3,6 +3,7 @@
 
 use core::arch::x86_64::*;
 
+use super::compress::FOUR_LANES;
 use super::pair::Pair;
 use super::{Apart, Job, Simd};
 
@@ -30,30 +31,6 @@ pub(super) unsafe fn enter_sse41<J: Job>(job: J) -> J::Output {
 #[inline(never)]
 unsafe fn apart_sse41<J: Apart<Sse41>>(s: Sse41, job: J) -> J::Output {
     job.run(s)
-}
-
-/// For each mask, the bytes of the lanes that it keeps, first to last.
-static COMPRESS: [[u8; 16]; 16] = compress_table();
-
-const fn compress_table() -> [[u8; 16]; 16] {
-    let mut table = [[0; 16]; 16];
-    let mut mask = 0;
-    while mask < 16 {
-        let (mut lane, mut n) = (0, 0);
-        while lane < 4 {
-            if mask >> lane & 1 == 1 {
-                let mut byte = 0;
-                while byte < 4 {
-                    table[mask][4 * n + byte] = (4 * lane + byte) as u8;
-                    byte += 1;
-                }
-                n += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
 }
 
 /// What SSE2 and SSE4.1 do alike.
@@ -455,7 +432,7 @@ impl Simd for Sse41 {
         // SAFETY: the token, and the caller's contract.
         unsafe {
             let bits = _mm_movemask_ps(m) as usize;
-            let order = _mm_loadu_si128(COMPRESS.as_ptr().add(bits).cast());
+            let order = _mm_loadu_si128(FOUR_LANES.as_ptr().add(bits).cast());
             _mm_storeu_si128(p.cast(), _mm_shuffle_epi8(x, order));
             bits.count_ones() as usize
         }

@@ -1,0 +1,25 @@
+//! Tables of byte shuffles that bring the lanes of a mask together, for instruction sets without such an instruction.
+
+/// For each mask, the bytes of the lanes that it keeps, first to last.
+pub(super) static FOUR_LANES: [[u8; 16]; 16] = four_lanes();
+
+const fn four_lanes() -> [[u8; 16]; 16] {
+    let mut table = [[0; 16]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut lane, mut n) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                let mut byte = 0;
+                while byte < 4 {
+                    table[mask][4 * n + byte] = (4 * lane + byte) as u8;
+                    byte += 1;
+                }
+                n += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+}
