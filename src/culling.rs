@@ -382,13 +382,10 @@ impl MaskedOcclusionCulling {
         if !triangles.len().is_multiple_of(3) {
             return Err(Error::InvalidSize);
         }
-        match pipeline::max_index(self.implementation, triangles) {
-            Some(max) if max as usize >= vertices.len() => Err(Error::IndexOutOfRange),
-            _ => Ok(()),
-        }
+        self.check_indices(triangles, vertices.len())
     }
 
-    /// Checked form for the boundary: is every index below `count`?
+    /// Is every index below `count`?
     pub(crate) fn check_indices(&self, triangles: &[u32], count: usize) -> Result<(), Error> {
         match pipeline::max_index(self.implementation, triangles) {
             Some(max) if max as usize >= count => Err(Error::IndexOutOfRange),

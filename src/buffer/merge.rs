@@ -58,7 +58,8 @@ impl Merge<'_> {
                     } else {
                         R::load(s, self.into.tile(index))
                     };
-                    for (mask, z) in O::layers(s, &O::load(s, self.from.tile(index))) {
+                    let layers = O::layers(s, &O::load(s, self.from.tile(index)));
+                    for &(mask, z) in &layers[..O::LAYERS] {
                         R::insert(s, &mut planes, mask, z);
                     }
                     R::store(s, self.into.tile(index), &planes);

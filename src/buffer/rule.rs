@@ -24,6 +24,8 @@ pub(crate) struct Inserted<S: Simd> {
 /// An update rule.
 pub(crate) trait Rule {
     const PLANES: usize;
+    /// How many of `layers` there are.
+    const LAYERS: usize;
 
     /// A tile into which nothing was drawn.
     fn empty<S: Simd>(s: S) -> Planes<S>;
@@ -44,7 +46,7 @@ pub(crate) trait Rule {
     /// Lanes that touch no pixel are hidden.
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M;
 
-    /// The layers from far to near, to be taken in by another buffer.
+    /// The layers from far to near, to be taken in by another buffer; those beyond `LAYERS` are nothing.
     fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3];
 }
 
@@ -64,6 +66,7 @@ pub(super) fn behind_layer<S: Simd>(s: S, touched: S::I, depth: S::F, mask: S::I
 macro_rules! two_plane_layout {
     () => {
         const PLANES: usize = 3;
+        const LAYERS: usize = 2;
 
         #[inline(always)]
         fn empty<S: Simd>(s: S) -> Planes<S> {

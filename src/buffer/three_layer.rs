@@ -11,6 +11,7 @@ pub(crate) struct ThreeLayer;
 
 impl Rule for ThreeLayer {
     const PLANES: usize = 5;
+    const LAYERS: usize = 3;
 
     #[inline(always)]
     fn empty<S: Simd>(s: S) -> Planes<S> {

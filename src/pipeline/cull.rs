@@ -5,10 +5,10 @@
 
 use super::batch::Batch;
 use super::clip::{self, Clipped};
-use super::last_step::LastStep;
+use super::last_step::{LastStep, take_survivors};
 use super::project::{Camera, Reader, SHIFT, bit_where, outcode, project};
 use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch};
-use super::setup::{Purpose, Setup, set_up};
+use super::setup::{Purpose, Setup};
 use super::{Facing, Mesh};
 use crate::CullingResult;
 use crate::buffer::Buffer;
@@ -147,22 +147,10 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
             }
         }
 
-        scratch.pad(survivors);
-        let mut done = 0;
-        while done < survivors {
-            let n = S::LANES.min(survivors - done);
-            // SAFETY: there is room for a vector after the last survivor; survivors name vertices of this chunk.
-            let alive = unsafe {
-                let first = scratch.survivors.as_ptr().add(done).cast();
-                set_up(setup, scratch, first, n, &mut batch)
-            };
-            if alive.rasterized != 0 && !last.take(&batch, &alive, &mut tally) {
-                return (CullingResult::Visible, tally);
-            }
-            done += n;
-        }
-        // What comes before it in the mesh was compared first, so that the counts do not depend on the lanes.
-        if unprojectable {
+        // SAFETY: survivors name vertices of this chunk, or of its clipped triangles.
+        let more = unsafe { take_survivors(setup, scratch, survivors, &mut batch, last, &mut tally) };
+        // What comes before what cannot be projected was compared first, so that the counts do not depend on the lanes.
+        if !more || unprojectable {
             return (CullingResult::Visible, tally);
         }
     }

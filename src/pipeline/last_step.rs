@@ -5,7 +5,8 @@ use core::mem::MaybeUninit;
 
 use super::batch::Batch;
 use super::edges::bits;
-use super::setup::{Alive, Purpose};
+use super::scratch::Scratch;
+use super::setup::{Alive, Purpose, Setup, set_up};
 use super::traverse::{Lists, TileStep, Visited, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
@@ -29,6 +30,38 @@ pub(super) trait LastStep {
     }
 }
 
+/// Sets up the first `survivors` of the scratch, vector by vector, and takes them to the last step. False: no more are
+/// needed.
+///
+/// # Safety
+/// Each survivor is three local numbers of regular vertices that were written to the scratch; there are at most as
+/// many as it is made for.
+#[inline(always)]
+pub(super) unsafe fn take_survivors<S: Simd, L: LastStep>(
+    setup: Setup<'_, S>,
+    scratch: &mut Scratch,
+    survivors: usize,
+    batch: &mut Batch,
+    last: &mut L,
+    tally: &mut Tally,
+) -> bool {
+    scratch.pad(survivors);
+    let mut done = 0;
+    while done < survivors {
+        let n = S::LANES.min(survivors - done);
+        // SAFETY: the caller's contract; there is room for a vector after the last survivor.
+        let alive = unsafe {
+            let first = scratch.survivors.as_ptr().add(done).cast();
+            set_up(setup, scratch, first, n, batch)
+        };
+        if alive.rasterized != 0 && !last.take(batch, &alive, tally) {
+            return false;
+        }
+        done += n;
+    }
+    true
+}
+
 /// Draws into a buffer, inside of a rectangle of tiles.
 pub(super) struct Draw<'a, T> {
     t: T,
@@ -39,7 +72,12 @@ pub(super) struct Draw<'a, T> {
 
 impl<'a, T: Simd> Draw<'a, T> {
     #[inline(always)]
-    pub fn new(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
+    pub fn new(t: T, buffer: &'a Buffer) -> Self {
+        Self::inside(t, buffer, buffer.all_tiles())
+    }
+
+    #[inline(always)]
+    pub fn inside(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
         const { assert!(T::LANES == SUB_TILES) }
         Self { t, buffer, clip, lists: Lists::new() }
     }
@@ -154,7 +192,7 @@ pub(super) struct Query<'a, T> {
 
 impl<'a, T: Simd> Query<'a, T> {
     #[inline(always)]
-    pub fn new(t: T, buffer: &'a Buffer, _: TileRect) -> Self {
+    pub fn new(t: T, buffer: &'a Buffer) -> Self {
         const { assert!(T::LANES == SUB_TILES) }
         Self { t, buffer, lists: Lists::new(), found: false }
     }

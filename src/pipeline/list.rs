@@ -2,10 +2,10 @@
 
 use super::Facing;
 use super::batch::Batch;
-use super::last_step::LastStep;
+use super::last_step::{LastStep, take_survivors};
 use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::scratch::{CHUNK_VERTICES, Scratch, pack};
-use super::setup::{Setup, set_up};
+use super::setup::Setup;
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::buffer::Buffer;
 use crate::simd::Simd;
@@ -28,19 +28,10 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
         let end = list.len().min(position + CHUNK);
         let survivors = fetch(list, position..end, scratch, &mut tally);
         position = end;
-        scratch.pad(survivors);
-        let mut done = 0;
-        while done < survivors {
-            let n = S::LANES.min(survivors - done);
-            // SAFETY: there is room for a vector after the last survivor; survivors name vertices just written.
-            let alive = unsafe {
-                let first = scratch.survivors.as_ptr().add(done).cast();
-                set_up(setup, scratch, first, n, &mut batch)
-            };
-            if alive.rasterized != 0 {
-                last.take(&batch, &alive, &mut tally);
-            }
-            done += n;
+        // SAFETY: survivors name vertices just written.
+        let more = unsafe { take_survivors(setup, scratch, survivors, &mut batch, last, &mut tally) };
+        if !more {
+            break;
         }
     }
     tally

@@ -141,7 +141,7 @@ macro_rules! mesh_job {
 
             #[inline(always)]
             fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output {
-                let mut last = $last_step::new(tile, self.buffer, self.buffer.all_tiles());
+                let mut last = $last_step::new(tile, self.buffer);
                 cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last)
             }
         }
@@ -182,7 +182,7 @@ impl Job for DrawList<'_, '_> {
 
     #[inline(always)]
     fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Tally {
-        let mut last = Draw::new(tile, self.buffer, self.scissor);
+        let mut last = Draw::inside(tile, self.buffer, self.scissor);
         list::draw(wide, self.buffer, self.list, &mut last)
     }
 }
