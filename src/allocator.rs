@@ -66,7 +66,7 @@ impl Allocator {
     }
 }
 
-/// An array of words at a multiple of 64 bytes, from an [`Allocator`].
+/// An array of words, at first zero, at a multiple of 64 bytes, from an [`Allocator`].
 pub(crate) struct AlignedWords {
     ptr: NonNull<u32>,
     len: usize,
@@ -80,7 +80,10 @@ unsafe impl Sync for AlignedWords {}
 
 impl AlignedWords {
     pub fn new(len: usize, allocator: Allocator) -> Result<Self, Error> {
-        let ptr = allocator.allocate(Self::layout(len)?)?.cast();
+        let ptr: NonNull<u32> = allocator.allocate(Self::layout(len)?)?.cast();
+        // Vectors load whole blocks of which only a part may have been written.
+        // SAFETY: allocated just now for as many words.
+        unsafe { ptr.write_bytes(0, len) };
         Ok(Self { ptr, len, allocator })
     }
 

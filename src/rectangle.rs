@@ -3,7 +3,7 @@
 //! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their least depths,
 //! and only where that does not settle it, sub-tile by sub-tile with their layers.
 
-use crate::buffer::{Accurate, Buffer, Quick, Rule, ThreeLayer, UNTOUCHED};
+use crate::buffer::{Accurate, Buffer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, UNTOUCHED};
 use crate::simd::{self, Job, Simd};
 use crate::statistics::Tally;
 use crate::{CullingResult, Implementation, UpdateRule, YAxis};
@@ -80,29 +80,28 @@ impl<R: Rule> Job for Walk<'_, R> {
     type Output = (CullingResult, Tally);
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, t: T, w: W) -> Self::Output {
+    fn run<S: Simd>(self, s: S) -> Self::Output {
         let (buffer, p) = (self.buffer, self.pixels);
         let mut tally = Tally::default();
-        let depth = w.f(self.depth);
-        for tile_y in p.y0 / 8..=p.y1 / 8 {
-            let mut tile_x = p.x0 / 32;
-            while tile_x <= p.x1 / 32 {
-                let count = W::LANES.min((p.x1 / 32 - tile_x) as usize + 1);
-                let index = (tile_y * buffer.tiles_w() + tile_x) as usize;
+        let depth = s.f(self.depth);
+        let (first, end) = (p.x0 / TILE_WIDTH, p.x1 / TILE_WIDTH + 1);
+        for y in p.y0 / TILE_HEIGHT..=p.y1 / TILE_HEIGHT {
+            let mut x = first;
+            while x < end {
                 // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
-                let least = unsafe { w.load_f(buffer.least().add(index)) };
+                let least = unsafe { s.load_f(buffer.least_of(x, y)) };
                 // Lanes that are not behind their whole tile.
-                let mut open = w.mask_bits(w.and_m(w.first(count), w.le(least, depth)));
+                let mut open = s.mask_bits(s.and_m(s.first((end - x) as usize), s.le(least, depth)));
                 while open != 0 {
                     let lane = open.trailing_zeros();
                     open &= open - 1;
                     tally.traversed += 1;
                     // SAFETY: one of the tiles that the rectangle touches.
-                    if unsafe { self.sees_tile(t, tile_x + lane, tile_y) } {
+                    if unsafe { self.sees_tile(s, x + lane, y) } {
                         return (CullingResult::Visible, tally);
                     }
                 }
-                tile_x += W::LANES as u32;
+                x += S::LANES as u32;
             }
         }
         (CullingResult::Occluded, tally)
@@ -115,23 +114,27 @@ impl<R: Rule> Walk<'_, R> {
     /// # Safety
     /// It is a tile of the buffer, and nobody draws.
     #[inline(always)]
-    unsafe fn sees_tile<T: Simd>(&self, t: T, x: u32, y: u32) -> bool {
+    unsafe fn sees_tile<S: Simd>(&self, s: S, x: u32, y: u32) -> bool {
         let (buffer, p) = (self.buffer, self.pixels);
-        let index = (y * buffer.tiles_w() + x) as usize;
+        // Vectors of sixteen lanes take the tile's whole block; rows of the other tile touch nothing.
+        let block_y = y & !(S::LANES as u32 / 8 - 1);
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let planes = unsafe {
-            if *buffer.least().add(index) == UNTOUCHED {
+            if *buffer.least_of(x, y) == UNTOUCHED {
                 return true;
             }
-            R::load(t, buffer.tile(index))
+            R::load(s, buffer.tile(x, block_y))
         };
         // Rows as lanes, their first and their end pixel; a row outside has none.
-        let rows = t.add_i(t.i((y * 8) as i32), t.iota());
-        let inside = t.and_m(t.gt_i(rows, t.i(p.y0 as i32 - 1)), t.gt_i(t.i(p.y1 as i32 + 1), rows));
-        let within = |x_pixel: i64| t.i((x_pixel - i64::from(x) * 32).clamp(0, 32) as i32);
-        let (first, end) = (within(i64::from(p.x0)), within(i64::from(p.x1) + 1));
-        let end = t.select_i(inside, end, t.i(0));
-        let touched = t.transpose_bytes(t.and_not(t.ones_shl(end), t.ones_shl(first)));
-        t.mask_bits(R::hides(t, &planes, touched, t.f(self.depth))) != 0xff
+        let rows = s.add_i(s.i((block_y * TILE_HEIGHT) as i32), s.iota());
+        let first_row = p.y0.max(y * TILE_HEIGHT);
+        let end_row = (p.y1 + 1).min((y + 1) * TILE_HEIGHT);
+        let inside = s.and_m(s.gt_i(rows, s.i(first_row as i32 - 1)), s.gt_i(s.i(end_row as i32), rows));
+        let within = |column: u32| s.i(column.saturating_sub(x * TILE_WIDTH) as i32);
+        let (first, end) = (within(p.x0), within(p.x1 + 1));
+        let end = s.select_i(inside, end, s.i(0));
+        let touched = s.transpose_bytes(s.and_not(s.ones_shl(end), s.ones_shl(first)));
+        let hidden = s.mask_bits(R::hides(s, &planes, touched, s.f(self.depth)));
+        hidden != ((1_u64 << S::LANES) - 1) as u32
     }
 }

@@ -33,8 +33,8 @@ impl Job for Transform<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, _: T, wide: W) {
+    fn run<S: Simd>(self, s: S) {
         // SAFETY: whoever made the job vouched for both arrays.
-        unsafe { pipeline::transform(wide, self.matrix, self.source, self.out, self.count) }
+        unsafe { pipeline::transform(s, self.matrix, self.source, self.out, self.count) }
     }
 }

@@ -1,6 +1,7 @@
 //! The accurate rule, after Andersson, Hasselgren, Akenine-Möller, "Masked Depth Culling for Graphics
 //! Hardware", 2015: of the reference, the working layer and the triangle, the two closest in depth merge.
 
+use super::BLOCK;
 use super::rule::{Inserted, Planes, Rule, live, two_plane_layout};
 use crate::simd::Simd;
 

@@ -2,7 +2,7 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{Accurate, Buffer, Quick, Rule, ThreeLayer, UNTOUCHED, fresh};
+use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, UNTOUCHED, load};
 use crate::simd::{self, Job, Simd};
 use crate::{Implementation, UpdateRule};
 
@@ -21,7 +21,7 @@ impl Job for Merge<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, s: T, _: W) {
+    fn run<T: Simd>(self, s: T) {
         match self.into.rule() {
             UpdateRule::ThreeLayer => self.into_rule::<T, ThreeLayer>(s),
             UpdateRule::Quick => self.into_rule::<T, Quick>(s),
@@ -42,28 +42,27 @@ impl Merge<'_> {
 
     #[inline(always)]
     fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
-        let tiles = self.into.all_tiles();
-        for y in 0..tiles.y1 {
+        let Self { into, from } = self;
+        let tiles = into.all_tiles();
+        let step = T::LANES / SUB_TILES;
+        for y in (0..tiles.y1).step_by(step) {
             for x in 0..tiles.x1 {
-                let index = (y * tiles.x1 + x) as usize;
-                // SAFETY: `index` is a tile of both buffers, which are of one size; `into` is exclusive,
-                // `from` is not written while it is borrowed; both were made for their rules.
+                // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at
+                // once, `y` is the block's; `into` is exclusive, `from` is not written while it is borrowed; both were
+                // made for their rules.
                 unsafe {
-                    if *self.from.least().add(index) == UNTOUCHED {
+                    let untouched = |y: u32| *from.least_of(x, y) == UNTOUCHED;
+                    if untouched(y) && (step == 1 || untouched(y + 1)) {
                         continue;
                     }
-                    let least = self.into.least().add(index);
-                    let mut planes = if *least == UNTOUCHED {
-                        fresh::<T, R>(s, self.into.border(x, y))
-                    } else {
-                        R::load(s, self.into.tile(index))
-                    };
-                    let layers = O::layers(s, &O::load(s, self.from.tile(index)));
+                    let at = TilePlace::new(into, x, y);
+                    let mut planes = load::<T, R>(s, into, at);
+                    let layers = O::layers(s, &load::<T, O>(s, from, TilePlace::new(from, x, y)));
                     for &(mask, z) in &layers[..O::LAYERS] {
                         R::insert(s, &mut planes, mask, z);
                     }
-                    R::store(s, self.into.tile(index), &planes);
-                    *least = s.least(planes.z0);
+                    R::store(s, at.planes, &planes);
+                    s.store_least(at.least, into.tiles_w() as usize, planes.z0);
                 }
             }
         }

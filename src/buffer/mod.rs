@@ -2,8 +2,10 @@
 //!
 //! The screen is cut into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i`
 //! of a vector is the sub-tile in column `i % 4` and row `i / 4`. Bit `8 * y + x` of a mask is the pixel
-//! in column `x` and row `y` of the sub-tile. A tile is five planes of eight words (20 bytes a
-//! sub-tile) under the three-layer rule and three (12 bytes) under the others, plane after plane.
+//! in column `x` and row `y` of the sub-tile. In memory two tiles, one below the other, are a block: five planes of
+//! sixteen words (20 bytes a sub-tile) under the three-layer rule and three (12 bytes) under the others, plane after
+//! plane, the upper tile's eight words first. So a plane is one cache line, vectors of sixteen lanes take a
+//! block at once, and vectors of eight lanes half of it.
 //!
 //! Beside them each tile has the least of its reference depths, so that a triangle or rectangle behind
 //! all of it is done with in one comparison. There, [`UNTOUCHED`] says that nothing was drawn since the
@@ -31,8 +33,12 @@ use crate::{Allocator, Error, ScissorRect, UpdateRule};
 
 pub(crate) const TILE_WIDTH: u32 = 32;
 pub(crate) const TILE_HEIGHT: u32 = 8;
+const BLOCK_HEIGHT: u32 = 2 * TILE_HEIGHT;
 /// Sub-tiles in a tile, which is lanes in a tile's vector.
 pub(crate) const SUB_TILES: usize = 8;
+
+/// Words of a plane of a block, which is two tiles.
+pub(crate) const BLOCK: usize = 2 * SUB_TILES;
 
 /// The least depth of a tile into which nothing was drawn since the last clear.
 pub(crate) const UNTOUCHED: f32 = -1.0;
@@ -56,16 +62,21 @@ pub(crate) struct Buffer {
     rule: UpdateRule,
     planes: AlignedWords,
     least: AlignedWords,
-    /// For the tiles that the screen's edge cuts: which pixels of each sub-tile are outside.
+    /// For the blocks that the screen's edge cuts: which pixels of each sub-tile are outside.
     /// First those of the right column, then of the lowest row, then of the corner.
-    border: [[u32; SUB_TILES]; 3],
+    border: [[u32; BLOCK]; 3],
+    /// The column of tiles and the row of blocks in which the screen's edge cuts sub-tiles, or none.
+    cut_column: u32,
+    cut_row: u32,
 }
 
 impl Buffer {
     pub fn new(width: u32, height: u32, rule: UpdateRule, allocator: Allocator) -> Result<Self, Error> {
         let (tiles_w, tiles_h) = (width.div_ceil(TILE_WIDTH), height.div_ceil(TILE_HEIGHT));
-        let tiles = tiles_w as usize * tiles_h as usize;
-        let (right, bottom) = (width - (tiles_w - 1) * TILE_WIDTH, height - (tiles_h - 1) * TILE_HEIGHT);
+        // Whole blocks.
+        let tiles = tiles_w as usize * tiles_h.next_multiple_of(2) as usize;
+        let right = width - (tiles_w - 1) * TILE_WIDTH;
+        let bottom = height - (tiles_h - 1) / 2 * BLOCK_HEIGHT;
         let mut buffer = Self {
             width,
             height,
@@ -75,7 +86,9 @@ impl Buffer {
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
             // The widest vector may be loaded from the last of them.
             least: AlignedWords::new(tiles + MAX_LANES, allocator)?,
-            border: [outside(right, TILE_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
+            border: [outside(right, BLOCK_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
+            cut_column: if width.is_multiple_of(8) { u32::MAX } else { tiles_w - 1 },
+            cut_row: if height.is_multiple_of(4) { u32::MAX } else { (tiles_h - 1) / 2 },
         };
         buffer.clear();
         Ok(buffer)
@@ -132,30 +145,54 @@ impl Buffer {
         Ok(TileRect { x0, y0, x1, y1 })
     }
 
-    /// The planes of tile `index` (row by row), which is below the number of tiles.
+    /// The planes of tile (0, y); those of the next tile to the right are `BLOCK` words for every plane away.
     #[inline(always)]
-    pub fn tile(&self, index: usize) -> *mut u32 {
-        debug_assert!((index + 1) * plane_count(self.rule) * SUB_TILES <= self.planes.len());
-        self.planes.as_ptr().wrapping_add(index * plane_count(self.rule) * SUB_TILES)
+    pub fn row(&self, y: u32) -> *mut u32 {
+        let block = (y / 2 * self.tiles_w) as usize;
+        let words = block * plane_count(self.rule) * BLOCK + (y % 2) as usize * SUB_TILES;
+        debug_assert!(words < self.planes.len());
+        self.planes.as_ptr().wrapping_add(words)
     }
 
-    /// The least depths of the tiles, row by row, and room for a vector more.
+    /// The planes of tile (x, y), `BLOCK` words apart.
+    #[inline(always)]
+    pub fn tile(&self, x: u32, y: u32) -> *mut u32 {
+        self.row(y).wrapping_add(x as usize * plane_count(self.rule) * BLOCK)
+    }
+
+    /// The least depths of the tiles, row by row, for whole blocks, and room for a vector more.
     #[inline(always)]
     pub fn least(&self) -> *mut f32 {
         self.least.as_ptr().cast()
     }
 
-    /// The pixels of tile (x, y) that lie outside of the screen, where there are any.
+    /// The least depth of tile (x, y).
     #[inline(always)]
-    pub fn border(&self, x: u32, y: u32) -> Option<&[u32; SUB_TILES]> {
+    pub fn least_of(&self, x: u32, y: u32) -> *mut f32 {
+        self.least().wrapping_add(y as usize * self.tiles_w as usize + x as usize)
+    }
+
+    /// The pixels that lie outside of the screen in tile (x, y) and, where y is even, in the tile below, eight words
+    /// each; if there are any in their block.
+    #[inline(always)]
+    pub fn border(&self, x: u32, y: u32) -> Option<*const u32> {
         let right = x + 1 == self.tiles_w && !self.width.is_multiple_of(TILE_WIDTH);
-        let bottom = y + 1 == self.tiles_h && !self.height.is_multiple_of(TILE_HEIGHT);
-        match (right, bottom) {
-            (false, false) => None,
-            (true, false) => Some(&self.border[0]),
-            (false, true) => Some(&self.border[1]),
-            (true, true) => Some(&self.border[2]),
-        }
+        let bottom = y / 2 == (self.tiles_h - 1) / 2 && !self.height.is_multiple_of(BLOCK_HEIGHT);
+        let border = match (right, bottom) {
+            (false, false) => return None,
+            (true, false) => &self.border[0],
+            (false, true) => &self.border[1],
+            (true, true) => &self.border[2],
+        };
+        Some(border.as_ptr().wrapping_add((y % 2) as usize * SUB_TILES))
+    }
+
+    /// The same, if the screen's edge cuts through sub-tiles there.
+    #[inline(always)]
+    pub fn cut(&self, x: u32, y: u32) -> Option<*const u32> {
+        let right = x == self.cut_column;
+        let bottom = y / 2 == self.cut_row;
+        if right || bottom { self.border(x, y) } else { None }
     }
 }
 
@@ -168,22 +205,80 @@ pub(crate) const fn plane_count(rule: UpdateRule) -> usize {
     }
 }
 
-/// The pixels of a tile that are not among its first `width` columns and `height` rows.
-fn outside(width: u32, height: u32) -> [u32; SUB_TILES] {
+/// The pixels of a block that are not among its first `width` columns and `height` rows.
+fn outside(width: u32, height: u32) -> [u32; BLOCK] {
     core::array::from_fn(|lane| {
         let (left, top) = (lane as u32 % 4 * 8, lane as u32 / 4 * 4);
         (0..32).filter(|bit| left + bit % 8 >= width || top + bit / 8 >= height).map(|bit| 1 << bit).sum()
     })
 }
 
-/// The contents of a tile into which nothing was drawn.
+/// The contents of tiles into which nothing was drawn, and where their border is.
+///
+/// # Safety
+/// The border can be read for a vector.
 #[inline(always)]
-pub(crate) fn fresh<S: Simd, R: Rule>(s: S, border: Option<&[u32; SUB_TILES]>) -> Planes<S> {
+pub(crate) unsafe fn fresh<S: Simd, R: Rule>(s: S, border: Option<*const u32>) -> Planes<S> {
     let mut planes = R::empty(s);
     if let Some(outside) = border {
-        // SAFETY: eight words.
-        let all_outside = s.eq_i(unsafe { s.load_i(outside.as_ptr()) }, s.i(-1));
+        // SAFETY: the caller's contract.
+        let all_outside = s.eq_i(unsafe { s.load_i(outside) }, s.i(-1));
         planes.z0 = s.select(all_outside, s.f(OUTSIDE), planes.z0);
     }
     planes
+}
+
+/// Where a tile is: its column and row, its planes, and its least depth.
+#[derive(Clone, Copy)]
+pub(crate) struct TilePlace {
+    pub x: u32,
+    pub y: u32,
+    pub planes: *mut u32,
+    pub least: *mut f32,
+}
+
+impl TilePlace {
+    #[inline(always)]
+    pub fn new(buffer: &Buffer, x: u32, y: u32) -> Self {
+        Self { x, y, planes: buffer.tile(x, y), least: buffer.least_of(x, y) }
+    }
+}
+
+/// What is in a tile, or, for a vector of sixteen lanes and an even row, in it and in the tile below.
+///
+/// # Safety
+/// It is a tile of the buffer, which was made for the rule `R` and into which nobody draws.
+#[inline(always)]
+pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace) -> Planes<S> {
+    const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
+    // SAFETY: the caller's contract; blocks are whole.
+    unsafe {
+        // Of all least depths only `UNTOUCHED` is negative.
+        let sign = |below: usize| (*at.least.add(below)).to_bits() as i32;
+        let upper = sign(0);
+        let lower = if S::LANES == SUB_TILES { upper } else { sign(buffer.tiles_w() as usize) };
+        let planes = R::load(s, at.planes);
+        if upper | lower >= 0 {
+            return planes;
+        }
+        let untouched = fresh::<S, R>(s, buffer.border(at.x, at.y));
+        if upper & lower < 0 {
+            return untouched;
+        }
+        let first = s.first(SUB_TILES);
+        let touched = if lower < 0 { first } else { s.and_not_m(first, s.first(S::LANES)) };
+        choose(s, touched, &planes, &untouched)
+    }
+}
+
+/// The lanes in `m` of one, the others of the other.
+#[inline(always)]
+fn choose<S: Simd>(s: S, m: S::M, a: &Planes<S>, b: &Planes<S>) -> Planes<S> {
+    Planes {
+        z0: s.select(m, a.z0, b.z0),
+        z_near: s.select(m, a.z_near, b.z_near),
+        z_far: s.select(m, a.z_far, b.z_far),
+        near: s.select_i(m, a.near, b.near),
+        far: s.select_i(m, a.far, b.far),
+    }
 }

@@ -1,6 +1,7 @@
 //! The quick rule: Hasselgren, Andersson, Akenine-Möller, "Masked Software Occlusion Culling", HPG 2016,
 //! section 3.2. One working layer; a triangle that is far in front of it starts a new one.
 
+use super::BLOCK;
 use super::rule::{Inserted, Planes, Rule, live, two_plane_layout};
 use crate::simd::Simd;
 

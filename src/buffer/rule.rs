@@ -31,7 +31,7 @@ pub(crate) trait Rule {
     fn empty<S: Simd>(s: S) -> Planes<S>;
 
     /// # Safety
-    /// `p` can be read for `PLANES` times eight words, and `S` has eight lanes.
+    /// `PLANES` vectors can be read from `p` on, [`BLOCK`](super::BLOCK) words apart.
     unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S>;
 
     /// # Safety
@@ -76,7 +76,8 @@ macro_rules! two_plane_layout {
         #[inline(always)]
         unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S> {
             // SAFETY: the caller's contract.
-            let (z0, z_near, near) = unsafe { (s.load_f(p.cast()), s.load_f(p.add(8).cast()), s.load_i(p.add(16))) };
+            let (z0, z_near, near) =
+                unsafe { (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()), s.load_i(p.add(2 * BLOCK))) };
             Planes { z0, z_near, z_far: s.f(0.0), near, far: s.i(0) }
         }
 
@@ -85,8 +86,8 @@ macro_rules! two_plane_layout {
             // SAFETY: the caller's contract.
             unsafe {
                 s.store_f(p.cast(), planes.z0);
-                s.store_f(p.add(8).cast(), planes.z_near);
-                s.store_i(p.add(16), planes.near);
+                s.store_f(p.add(BLOCK).cast(), planes.z_near);
+                s.store_i(p.add(2 * BLOCK), planes.near);
             }
         }
 

@@ -4,7 +4,8 @@
 //! dropped (the farthest is lost to the reference, a nearer one is merged into the next behind it). An empty layer
 //! is kept as a full one at the reference depth, so there are no special cases.
 
-use super::rule::{Inserted, Planes, Rule, behind_layer, live};
+use super::BLOCK;
+use super::rule::{Inserted, Planes, Rule, behind_layer};
 use crate::simd::Simd;
 
 pub(crate) struct ThreeLayer;
@@ -24,10 +25,10 @@ impl Rule for ThreeLayer {
         unsafe {
             Planes {
                 z0: s.load_f(p.cast()),
-                z_near: s.load_f(p.add(8).cast()),
-                z_far: s.load_f(p.add(16).cast()),
-                near: s.load_i(p.add(24)),
-                far: s.load_i(p.add(32)),
+                z_near: s.load_f(p.add(BLOCK).cast()),
+                z_far: s.load_f(p.add(2 * BLOCK).cast()),
+                near: s.load_i(p.add(3 * BLOCK)),
+                far: s.load_i(p.add(4 * BLOCK)),
             }
         }
     }
@@ -37,19 +38,18 @@ impl Rule for ThreeLayer {
         // SAFETY: the caller's contract.
         unsafe {
             s.store_f(p.cast(), planes.z0);
-            s.store_f(p.add(8).cast(), planes.z_near);
-            s.store_f(p.add(16).cast(), planes.z_far);
-            s.store_i(p.add(24), planes.near);
-            s.store_i(p.add(32), planes.far);
+            s.store_f(p.add(BLOCK).cast(), planes.z_near);
+            s.store_f(p.add(2 * BLOCK).cast(), planes.z_far);
+            s.store_i(p.add(3 * BLOCK), planes.near);
+            s.store_i(p.add(4 * BLOCK), planes.far);
         }
     }
 
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near, z_far, near, far } = *planes;
-        let live = live(s, z0, c, depth);
         // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the
-        // reference. Nothing here waits for `live`: triangles that follow each other often meet in the same tile,
+        // reference. Nothing here waits for which lanes are alive: triangles that follow each other often meet in the same tile,
         // and the next one waits for what this one stores.
         let t = s.select(s.eq_i(c, s.i(0)), s.f(-1.0), depth);
         let nearer_than_near = s.lt(z_near, t);
@@ -69,10 +69,10 @@ impl Rule for ThreeLayer {
         let full_c = s.eq_i(mask_c, full);
         let drop_c = s.or_m(full_c, s.le(loss_c, s.min(loss_a, loss_b)));
         let drop_a = s.and_not_m(drop_c, s.le(loss_a, loss_b));
-        let risen = s.max(
-            s.max(s.select(full_c, z_c, z0), z0),
-            s.max(s.select(s.eq_i(mask_b, full), z_b, z0), s.select(s.eq_i(mask_a, full), z_a, z0)),
-        );
+        // The nearest full layer: where a nearer one is full, those behind it are.
+        let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
+        let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
+        let risen = s.select(full_c, s.max(z0, nearest_full), z0);
         *planes = Planes {
             z0: risen,
             z_near: s.select(drop_a, z_b, z_a),
@@ -80,7 +80,7 @@ impl Rule for ThreeLayer {
             z_far: s.select(drop_c, z_b, z_c),
             far: s.select_i(drop_c, mask_b, mask_c),
         };
-        Inserted { live, merged: s.lt(z0, risen) }
+        Inserted { live: s.lt(z0, t), merged: s.lt(z0, risen) }
     }
 
     #[inline(always)]

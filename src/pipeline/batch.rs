@@ -14,6 +14,8 @@ pub(super) struct Batch {
     pub middle_left: [f64; MAX_LANES],
     pub middle_right: [f64; MAX_LANES],
     pub middle_slope: [f64; MAX_LANES],
+    /// The edges once more, rounded: for bounds of what a row of tiles reaches.
+    pub rounded: Rounded,
     /// Depth bound of the first sub-tile of the first tile, and its change from sub-tile to sub-tile.
     pub z: [f32; MAX_LANES],
     pub z_across: [f32; MAX_LANES],
@@ -28,38 +30,31 @@ pub(super) struct Batch {
     pub tile_y0: [u32; MAX_LANES],
     pub tile_y1: [u32; MAX_LANES],
     /// Rows and columns of pixels of the bounding box, the last outside.
-    pub row0: [u32; MAX_LANES],
-    pub row1: [u32; MAX_LANES],
-    pub column0: [u32; MAX_LANES],
-    pub column1: [u32; MAX_LANES],
+    pub row0: [f32; MAX_LANES],
+    pub row1: [f32; MAX_LANES],
+    pub column0: [f32; MAX_LANES],
+    pub column1: [f32; MAX_LANES],
     /// x, y and 1/w of the three corners.
     pub corners: [[f32; MAX_LANES]; 9],
 }
 
+/// Edges in f32.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Rounded {
+    pub left: [f32; MAX_LANES],
+    pub left_slope: [f32; MAX_LANES],
+    pub right: [f32; MAX_LANES],
+    pub right_slope: [f32; MAX_LANES],
+    pub middle_left: [f32; MAX_LANES],
+    pub middle_right: [f32; MAX_LANES],
+    pub middle_slope: [f32; MAX_LANES],
+}
+
 impl Batch {
+    /// All zeros.
     pub fn new() -> Self {
-        Self {
-            left: [0.0; MAX_LANES],
-            left_slope: [0.0; MAX_LANES],
-            right: [0.0; MAX_LANES],
-            right_slope: [0.0; MAX_LANES],
-            middle_left: [0.0; MAX_LANES],
-            middle_right: [0.0; MAX_LANES],
-            middle_slope: [0.0; MAX_LANES],
-            z: [0.0; MAX_LANES],
-            z_across: [0.0; MAX_LANES],
-            z_down: [0.0; MAX_LANES],
-            z_clamp: [0.0; MAX_LANES],
-            nearest: [0.0; MAX_LANES],
-            tile_x0: [0; MAX_LANES],
-            tile_x1: [0; MAX_LANES],
-            tile_y0: [0; MAX_LANES],
-            tile_y1: [0; MAX_LANES],
-            row0: [0; MAX_LANES],
-            row1: [0; MAX_LANES],
-            column0: [0; MAX_LANES],
-            column1: [0; MAX_LANES],
-            corners: [[0.0; MAX_LANES]; 9],
-        }
+        // SAFETY: it is arrays of numbers, and all bits zero are a number of each kind.
+        unsafe { core::mem::MaybeUninit::zeroed().assume_init() }
     }
 }

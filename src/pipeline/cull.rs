@@ -27,8 +27,8 @@ impl Job for IndexRange<'_> {
     type Output = (u32, u32);
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, _: T, wide: W) -> (u32, u32) {
-        index_range(wide, self.0)
+    fn run<S: Simd>(self, s: S) -> (u32, u32) {
+        index_range(s, self.0)
     }
 }
 

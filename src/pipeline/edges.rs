@@ -48,6 +48,12 @@ fn replace(batch: &mut Batch, wide: u32) {
         batch.middle_slope[lane] = slope;
         batch.middle_left[lane] = if v2.1 < v1.1 { middle } else { -NOWHERE };
         batch.middle_right[lane] = if v2.1 > v1.1 { middle } else { NOWHERE };
+        let rounded = &mut batch.rounded;
+        (rounded.left[lane], rounded.left_slope[lane]) = (left as f32, left_slope as f32);
+        (rounded.right[lane], rounded.right_slope[lane]) = (right as f32, right_slope as f32);
+        rounded.middle_left[lane] = batch.middle_left[lane] as f32;
+        rounded.middle_right[lane] = batch.middle_right[lane] as f32;
+        rounded.middle_slope[lane] = slope as f32;
     }
 }
 

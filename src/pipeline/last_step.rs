@@ -7,11 +7,12 @@ use super::batch::Batch;
 use super::edges::bits;
 use super::scratch::Scratch;
 use super::setup::{Alive, Purpose, Setup, set_up};
-use super::traverse::{Lists, TileStep, Visited, Way, traverse};
+use super::strips::MAX_TILES;
+use super::traverse::{Lists, TileStep, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
-    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TileRect, UNTOUCHED, fresh,
+    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, load,
 };
 use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
@@ -78,7 +79,7 @@ impl<'a, T: Simd> Draw<'a, T> {
 
     #[inline(always)]
     pub fn inside(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
-        const { assert!(T::LANES == SUB_TILES) }
+        const { assert!(T::LANES.is_multiple_of(SUB_TILES)) }
         Self { t, buffer, clip, lists: Lists::new() }
     }
 }
@@ -113,10 +114,10 @@ struct Traverse<'a, S> {
 }
 
 impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
-    type Output = (Visited, S);
+    type Output = (Option<u32>, S);
 
     #[inline(always)]
-    fn run(mut self, t: T) -> (Visited, S) {
+    fn run(mut self, t: T) -> (Option<u32>, S) {
         (traverse(t, self.way, &mut self.step), self.step)
     }
 }
@@ -133,13 +134,15 @@ struct Update<'a, R> {
     buffer: &'a Buffer,
     updated: u64,
     merged: u64,
+    /// What the next tiles add to both.
+    counts: u32,
     rule: PhantomData<R>,
 }
 
 impl<'a, R> Update<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, updated: 0, merged: 0, rule: PhantomData }
+        Self { buffer, updated: 0, merged: 0, counts: 0, rule: PhantomData }
     }
 
     /// Tiles that were updated, and in which the reference depth rose.
@@ -150,6 +153,7 @@ impl<'a, R> Update<'a, R> {
 }
 
 impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
+    const PLANES: usize = R::PLANES;
     const DRAWS: bool = true;
 
     #[inline(always)]
@@ -158,26 +162,32 @@ impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
     }
 
     #[inline(always)]
-    unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, mut covered: T::I, depth: T::F) -> bool {
-        let border = self.buffer.border(x, y);
+    unsafe fn tile(&mut self, t: T, at: TilePlace, mut covered: T::I, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let inserted = unsafe {
-            let least = self.buffer.least().add(index);
-            let tile = self.buffer.tile(index);
-            if let Some(outside) = border {
-                let outside = t.load_i(outside.as_ptr());
-                let nothing = t.eq_i(t.and_not(outside, covered), t.i(0));
-                covered = t.select_i(nothing, t.i(0), t.or(covered, outside));
+            if let Some(outside) = self.buffer.cut(at.x, at.y) {
+                // With a pixel inside of the screen come all pixels outside.
+                let outside = t.load_i(outside);
+                covered = t.select_i(t.eq_i(covered, t.i(0)), t.i(0), t.or(covered, outside));
             }
-            let mut planes = if *least == UNTOUCHED { fresh::<T, R>(t, border) } else { R::load(t, tile) };
+            let mut planes = load::<T, R>(t, self.buffer, at);
             let inserted = R::insert(t, &mut planes, covered, depth);
-            R::store(t, tile, &planes);
-            *least = t.least(planes.z0);
+            R::store(t, at.planes, &planes);
+            t.store_least(at.least, self.buffer.tiles_w() as usize, planes.z0);
             inserted
         };
-        self.updated += u64::from(t.mask_bits(inserted.live) != 0);
-        self.merged += u64::from(t.mask_bits(inserted.merged) != 0);
+        // Four counts in the bytes of a word: of two tiles with a lane in which something was updated, merged.
+        let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
+        self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
         true
+    }
+
+    #[inline(always)]
+    fn tiles_done(&mut self) {
+        const { assert!(MAX_TILES < 256) }
+        let of = |byte: u32| u64::from(self.counts >> (8 * byte) & 0xff);
+        (self.updated, self.merged) = (self.updated + of(0) + of(1), self.merged + of(2) + of(3));
+        self.counts = 0;
     }
 }
 
@@ -186,14 +196,14 @@ pub(super) struct Query<'a, T> {
     t: T,
     buffer: &'a Buffer,
     lists: MaybeUninit<Lists>,
-    /// Some triangle touched a pixel, or was hidden before that was known.
+    /// Some triangle's box is on the screen.
     found: bool,
 }
 
 impl<'a, T: Simd> Query<'a, T> {
     #[inline(always)]
     pub fn new(t: T, buffer: &'a Buffer) -> Self {
-        const { assert!(T::LANES == SUB_TILES) }
+        const { assert!(T::LANES.is_multiple_of(SUB_TILES)) }
         Self { t, buffer, lists: Lists::new(), found: false }
     }
 }
@@ -204,18 +214,21 @@ impl<T: Simd> LastStep for Query<'_, T> {
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         let &mut Self { t, buffer, ref mut lists, .. } = self;
-        let way = Way { buffer, clip: buffer.all_tiles(), batch, alive, lists };
-        let (visited, touches) = match buffer.rule() {
-            UpdateRule::ThreeLayer => compared(t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) })),
-            UpdateRule::Quick => compared(t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) })),
-            UpdateRule::Accurate => compared(t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) })),
+        let clip = buffer.all_tiles();
+        let way = Way { buffer, clip, batch, alive, lists };
+        let stopped = match buffer.rule() {
+            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) }).0,
+            UpdateRule::Quick => t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) }).0,
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) }).0,
         };
-        self.found |= touches || visited.hidden || alive.rasterized != alive.lanes;
-        tally.traversed += visited.tiles;
+        self.found |= alive.rasterized != 0;
         // Triangles after the first that may be seen do not count, however many a vector has.
-        let counted = visited.stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
-        tally.rasterized += u64::from((alive.rasterized & counted).count_ones());
-        visited.stopped.is_none()
+        let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
+        tally.rasterized += u64::from(counted.count_ones());
+        for lane in bits(counted) {
+            tally.traversed += tiles_in(batch, lane, clip);
+        }
+        stopped.is_none()
     }
 
     #[inline(always)]
@@ -224,26 +237,20 @@ impl<T: Simd> LastStep for Query<'_, T> {
     }
 }
 
-#[inline(always)]
-fn compared<R>((visited, step): (Visited, Compare<'_, R>)) -> (Visited, bool) {
-    (visited, step.touches)
-}
-
 struct Compare<'a, R> {
     buffer: &'a Buffer,
-    /// Some pixel was touched.
-    touches: bool,
     rule: PhantomData<R>,
 }
 
 impl<'a, R> Compare<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, touches: false, rule: PhantomData }
+        Self { buffer, rule: PhantomData }
     }
 }
 
 impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
+    const PLANES: usize = R::PLANES;
     const DRAWS: bool = false;
 
     #[inline(always)]
@@ -252,20 +259,10 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
     }
 
     #[inline(always)]
-    unsafe fn tile(&mut self, t: T, index: usize, x: u32, y: u32, mut covered: T::I, depth: T::F) -> bool {
+    unsafe fn tile(&mut self, t: T, at: TilePlace, covered: T::I, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
-        unsafe {
-            if let Some(outside) = self.buffer.border(x, y) {
-                covered = t.and_not(t.load_i(outside.as_ptr()), covered);
-            }
-            self.touches |= t.mask_bits(t.eq_i(covered, t.i(0))) != 0xff;
-            let hidden = if *self.buffer.least().add(index) == UNTOUCHED {
-                t.eq_i(covered, t.i(0))
-            } else {
-                R::hides(t, &R::load(t, self.buffer.tile(index)), covered, depth)
-            };
-            t.mask_bits(hidden) == 0xff
-        }
+        let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at), covered, depth) };
+        t.mask_bits(hidden) == ((1_u64 << T::LANES) - 1) as u32
     }
 }
 

@@ -24,6 +24,7 @@ mod list;
 mod project;
 mod scratch;
 mod setup;
+mod strips;
 mod traverse;
 
 use crate::bins::TriList;
@@ -120,6 +121,12 @@ pub(crate) unsafe fn draw_list(
     list: &TriList<'_>,
     scissor: TileRect,
 ) -> Tally {
+    // A vector of sixteen lanes takes two tiles, one below the other, and may not take one that is outside.
+    let whole_blocks = scissor.y0 % 2 == 0 && (scissor.y1 % 2 == 0 || scissor.y1 == buffer.all_tiles().y1);
+    let implementation = match implementation {
+        Implementation::Avx512 if !whole_blocks => Implementation::Avx2,
+        other => other,
+    };
     simd::run(implementation, DrawList { buffer, list, scissor })
 }
 
@@ -140,9 +147,9 @@ macro_rules! mesh_job {
             type Output = (CullingResult, Tally);
 
             #[inline(always)]
-            fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output {
-                let mut last = $last_step::new(tile, self.buffer);
-                cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last)
+            fn run<S: Simd>(self, s: S) -> Self::Output {
+                let mut last = $last_step::new(s, self.buffer);
+                cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
             }
         }
     };
@@ -164,9 +171,9 @@ impl Job for BinMesh<'_, '_, '_> {
     type Output = (CullingResult, Tally, bool);
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, _: T, wide: W) -> Self::Output {
+    fn run<S: Simd>(self, s: S) -> Self::Output {
         let mut last = Bins::new(self.lists, self.bin_size, self.bins);
-        let (result, tally) = cull::mesh(wide, self.buffer, self.camera, self.mesh, &mut last);
+        let (result, tally) = cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last);
         (result, tally, last.full)
     }
 }
@@ -181,8 +188,8 @@ impl Job for DrawList<'_, '_> {
     type Output = Tally;
 
     #[inline(always)]
-    fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Tally {
-        let mut last = Draw::inside(tile, self.buffer, self.scissor);
-        list::draw(wide, self.buffer, self.list, &mut last)
+    fn run<S: Simd>(self, s: S) -> Tally {
+        let mut last = Draw::inside(s, self.buffer, self.scissor);
+        list::draw(s, self.buffer, self.list, &mut last)
     }
 }

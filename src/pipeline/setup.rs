@@ -192,21 +192,29 @@ pub(super) unsafe fn set_up<S: Simd>(
     let (dx_m, dy_m) = (s.mul_d(s.sub_d(dx_l, dx_r), sign), s.mul_d(s.sub_d(dy_l, dy_r), sign));
     // A query keeps triangles that snapping made degenerate or turned over: their bounding box stands for them.
     let flat = s.and_m(s.le(area, s.f(0.0)), if query { active } else { s.first(0) });
+    macro_rules! store_edge {
+        ($field:ident, $value:expr) => {
+            let value = $value;
+            store!(d $field, value);
+            // SAFETY: as above.
+            unsafe { s.store_f(batch.rounded.$field.as_mut_ptr(), s.d_to_f(value)) }
+        };
+    }
     let [_, right, right_slope] = edge(s, query, [x0, y0], [dx_r, dy_r]);
-    store!(d right, s.add_d(right, nowhere(s, s.or_m(flat, s.eq(v0[1], v1[1])), NOWHERE)));
-    store!(d right_slope, right_slope);
+    store_edge!(right, s.add_d(right, nowhere(s, s.or_m(flat, s.eq(v0[1], v1[1])), NOWHERE)));
+    store_edge!(right_slope, right_slope);
     let [left, _, left_slope] = edge(s, query, [x0, y0], [dx_l, dy_l]);
-    store!(d left, s.add_d(left, nowhere(s, s.or_m(flat, s.eq(v0[1], v2[1])), -NOWHERE)));
-    store!(d left_slope, left_slope);
+    store_edge!(left, s.add_d(left, nowhere(s, s.or_m(flat, s.eq(v0[1], v2[1])), -NOWHERE)));
+    store_edge!(left_slope, left_slope);
     let [middle_left, middle_right, middle_slope] = edge(s, query, [x1, y1], [dx_m, dy_m]);
     let all = s.le(s.f(0.0), s.f(0.0));
-    store!(d middle_left, s.add_d(middle_left, nowhere(s, s.or_m(flat, s.and_not_m(up, all)), -NOWHERE)));
-    store!(d middle_right, s.add_d(middle_right, nowhere(s, s.or_m(flat, s.and_not_m(down, all)), NOWHERE)));
-    store!(d middle_slope, middle_slope);
-    store!(i row0, row0);
-    store!(i row1, row1);
-    store!(i column0, column0);
-    store!(i column1, column1);
+    store_edge!(middle_left, s.add_d(middle_left, nowhere(s, s.or_m(flat, s.and_not_m(up, all)), -NOWHERE)));
+    store_edge!(middle_right, s.add_d(middle_right, nowhere(s, s.or_m(flat, s.and_not_m(down, all)), NOWHERE)));
+    store_edge!(middle_slope, middle_slope);
+    store!(row0, s.to_f(row0));
+    store!(row1, s.to_f(row1));
+    store!(column0, s.to_f(column0));
+    store!(column1, s.to_f(column1));
     if !query {
         edges::replace_wide(batch, lanes & wide);
     }

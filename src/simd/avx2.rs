@@ -11,7 +11,7 @@ pub(super) struct Avx2(());
 /// The processor has AVX2, BMI1, BMI2, LZCNT and POPCNT.
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
-    job.run(Avx2(()), Avx2(()))
+    job.run(Avx2(()))
 }
 
 /// # Safety
@@ -40,6 +40,24 @@ const fn compress_table() -> [[u8; 8]; 256] {
         mask += 1;
     }
     table
+}
+
+/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, for which the
+/// instruction needs none.
+///
+/// # Safety
+/// The processor has the instruction set.
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn ones_shl(count: __m256i) -> __m256i {
+    let ones = _mm256_set1_epi32(-1);
+    let shifted;
+    // SAFETY: registers only.
+    unsafe {
+        core::arch::asm!("vpsllvd {}, {}, {}", lateout(ymm_reg) shifted, in(ymm_reg) ones, in(ymm_reg) count,
+            options(pure, nomem, nostack, preserves_flags));
+    }
+    shifted
 }
 
 impl Simd for Avx2 {
@@ -153,13 +171,18 @@ impl Simd for Avx2 {
         }
     }
     #[inline(always)]
-    fn least(self, a: __m256) -> f32 {
-        // SAFETY: the token proves the instruction set.
+    unsafe fn store_least(self, p: *mut f32, _: usize, a: __m256) {
+        // SAFETY: the token, and the caller's contract.
         unsafe {
             let m = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
             let m = _mm_min_ps(m, _mm_movehl_ps(m, m));
-            _mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m)))
+            p.write(_mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
         }
+    }
+    #[inline(always)]
+    unsafe fn lookup(self, table: *const f32, index: __m256i) -> __m256 {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), index) }
     }
     #[inline(always)]
     fn f(self, x: f32) -> __m256 {
@@ -242,6 +265,11 @@ impl Simd for Avx2 {
         unsafe { _mm256_cvtps_epi32(a) }
     }
     #[inline(always)]
+    fn trunc(self, a: Self::F) -> __m256i {
+        // SAFETY: the token proves the instruction set.
+        unsafe { _mm256_cvttps_epi32(a) }
+    }
+    #[inline(always)]
     fn to_f(self, a: Self::I) -> __m256 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cvtepi32_ps(a) }
@@ -265,6 +293,11 @@ impl Simd for Avx2 {
     fn sub_i(self, a: Self::I, b: Self::I) -> __m256i {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_sub_epi32(a, b) }
+    }
+    #[inline(always)]
+    fn sub_sat(self, a: Self::I, b: Self::I) -> __m256i {
+        // SAFETY: the token proves the instruction set.
+        unsafe { _mm256_subs_epu16(a, b) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> __m256i {
@@ -309,7 +342,7 @@ impl Simd for Avx2 {
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> __m256i {
         // SAFETY: the token proves the instruction set.
-        unsafe { _mm256_sllv_epi32(_mm256_set1_epi32(-1), count) }
+        unsafe { ones_shl(count) }
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> __m256 {

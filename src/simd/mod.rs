@@ -72,6 +72,14 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// Each of them can be read.
     unsafe fn gather(self, p: *const f32, index: Self::I) -> Self::F;
+    /// `table[index]`. Indices are below `LANES`.
+    /// # Safety
+    /// `table` can be read for `LANES` floats.
+    #[inline(always)]
+    unsafe fn lookup(self, table: *const f32, index: Self::I) -> Self::F {
+        // SAFETY: the caller's contract.
+        unsafe { self.gather(table, index) }
+    }
     /// `LANES` triangles of three indices: the first of each, the second of each, the third of each.
     /// # Safety
     /// `p` can be read for `3 * LANES` indices.
@@ -98,14 +106,21 @@ pub(crate) trait Simd: Copy {
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
     /// To the nearest integer, ties to even; undefined (but harmless) where it does not fit.
     fn round(self, a: Self::F) -> Self::I;
+    /// Towards zero; undefined (but harmless) where it does not fit.
+    fn trunc(self, a: Self::F) -> Self::I;
     fn to_f(self, a: Self::I) -> Self::F;
     fn bits(self, a: Self::F) -> Self::I;
     fn float_of_bits(self, a: Self::I) -> Self::F;
-    /// The least lane.
-    fn least(self, a: Self::F) -> f32;
+    /// The least of the first eight lanes to `p`; of the second eight, if there are any, to `p + pitch`. A vector of
+    /// four lanes has one least.
+    /// # Safety
+    /// Both can be written.
+    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F);
 
     fn add_i(self, a: Self::I, b: Self::I) -> Self::I;
     fn sub_i(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `a - b`, or 0 where that is negative, for each 16 bits: numbers from 0 to 65535.
+    fn sub_sat(self, a: Self::I, b: Self::I) -> Self::I;
     fn and(self, a: Self::I, b: Self::I) -> Self::I;
     fn or(self, a: Self::I, b: Self::I) -> Self::I;
     /// `!a & b`.
@@ -117,7 +132,7 @@ pub(crate) trait Simd: Copy {
     fn shl<const N: i32>(self, a: Self::I) -> Self::I;
     /// Shifts in copies of the sign.
     fn sra<const N: i32>(self, a: Self::I) -> Self::I;
-    /// All ones shifted left by each lane's count, from 0 to 32; by 32 they are gone.
+    /// All ones shifted left by each lane's count, from 0 to 65535; by 32 and more they are gone.
     fn ones_shl(self, count: Self::I) -> Self::I;
     fn gt_i(self, a: Self::I, b: Self::I) -> Self::M;
     fn eq_i(self, a: Self::I, b: Self::I) -> Self::M;
@@ -135,19 +150,6 @@ pub(crate) trait Simd: Copy {
     #[inline(always)]
     fn first(self, n: usize) -> Self::M {
         self.gt_i(self.i(n as i32), self.iota())
-    }
-
-    /// 1, 2, 4, ... a lane: picks bits of a mask for [`Self::compress`].
-    #[inline(always)]
-    fn one_bit_each(self) -> Self::I {
-        let mut bits = [0_u32; MAX_LANES];
-        let mut lane = 0;
-        while lane < MAX_LANES {
-            bits[lane] = 1 << lane;
-            lane += 1;
-        }
-        // SAFETY: the array holds a vector.
-        unsafe { self.load_i(bits.as_ptr()) }
     }
 
     fn d(self, x: f64) -> Self::D;
@@ -173,8 +175,7 @@ pub(crate) trait Apart<S> {
 /// A piece of the kernel that runs on any instruction set.
 pub(crate) trait Job {
     type Output;
-    /// `tile` has the 8 lanes of a 32x8 tile; `wide` as many as the processor likes.
-    fn run<T: Simd, W: Simd>(self, tile: T, wide: W) -> Self::Output;
+    fn run<S: Simd>(self, s: S) -> Self::Output;
 }
 
 /// Runs `job` on `implementation`, which must be one of [`available`].

@@ -11,7 +11,7 @@ pub(super) struct Neon(());
 
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
     // Every aarch64 processor that Rust's std supports has NEON: the token needs no more proof.
-    job.run(Pair(Neon(())), Pair(Neon(())))
+    job.run(Pair(Neon(())))
 }
 
 impl Simd for Neon {
@@ -177,6 +177,11 @@ impl Simd for Neon {
         unsafe { vcvtnq_s32_f32(a) }
     }
     #[inline(always)]
+    fn trunc(self, a: Self::F) -> int32x4_t {
+        // SAFETY: the token proves the instruction set.
+        unsafe { vcvtq_s32_f32(a) }
+    }
+    #[inline(always)]
     fn to_f(self, a: Self::I) -> float32x4_t {
         // SAFETY: the token proves the instruction set.
         unsafe { vcvtq_f32_s32(a) }
@@ -192,9 +197,9 @@ impl Simd for Neon {
         unsafe { vreinterpretq_f32_s32(a) }
     }
     #[inline(always)]
-    fn least(self, a: Self::F) -> f32 {
-        // SAFETY: the token proves the instruction set.
-        unsafe { vminvq_f32(a) }
+    unsafe fn store_least(self, p: *mut f32, _: usize, a: Self::F) {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { p.write(vminvq_f32(a)) }
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> int32x4_t {
@@ -205,6 +210,11 @@ impl Simd for Neon {
     fn sub_i(self, a: Self::I, b: Self::I) -> int32x4_t {
         // SAFETY: the token proves the instruction set.
         unsafe { vsubq_s32(a, b) }
+    }
+    #[inline(always)]
+    fn sub_sat(self, a: Self::I, b: Self::I) -> int32x4_t {
+        // SAFETY: the token proves the instruction set.
+        unsafe { vreinterpretq_s32_u16(vqsubq_u16(vreinterpretq_u16_s32(a), vreinterpretq_u16_s32(b))) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> int32x4_t {
@@ -249,7 +259,10 @@ impl Simd for Neon {
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> int32x4_t {
         // SAFETY: the token proves the instruction set.
-        unsafe { vshlq_s32(vdupq_n_s32(-1), count) }
+        unsafe {
+            // The instruction looks at a count's lowest byte only.
+            vshlq_s32(vdupq_n_s32(-1), vminq_s32(count, vdupq_n_s32(32)))
+        }
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> uint32x4_t {

@@ -122,6 +122,8 @@ impl<S: Simd> Simd for Pair<S> {
     }
 
     pairwise! {
+        trunc(a: F) -> I;
+        sub_sat(a: I, b: I) -> I;
         add(a: F, b: F) -> F;
         sub(a: F, b: F) -> F;
         mul(a: F, b: F) -> F;
@@ -173,8 +175,9 @@ impl<S: Simd> Simd for Pair<S> {
         [self.0.sra::<N>(a[0]), self.0.sra::<N>(a[1])]
     }
     #[inline(always)]
-    fn least(self, a: Self::F) -> f32 {
-        self.0.least(self.0.min(a[0], a[1]))
+    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F) {
+        // SAFETY: the caller's contract.
+        unsafe { self.0.store_least(p, pitch, self.0.min(a[0], a[1])) }
     }
     #[inline(always)]
     fn mask_bits(self, m: Self::M) -> u32 {

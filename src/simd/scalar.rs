@@ -7,7 +7,7 @@ use super::{Apart, Job, Simd};
 pub(super) struct Scalar4;
 
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
-    job.run(Pair(Scalar4), Pair(Scalar4))
+    job.run(Pair(Scalar4))
 }
 
 macro_rules! lanes {
@@ -205,6 +205,10 @@ impl Simd for Scalar4 {
         lanes!(a => a.round_ties_even() as i32)
     }
     #[inline(always)]
+    fn trunc(self, a: [f32; 4]) -> [i32; 4] {
+        lanes!(a => a as i32)
+    }
+    #[inline(always)]
     fn to_f(self, a: [i32; 4]) -> [f32; 4] {
         lanes!(a => a as f32)
     }
@@ -217,9 +221,10 @@ impl Simd for Scalar4 {
         lanes!(a => f32::from_bits(a as u32))
     }
     #[inline(always)]
-    fn least(self, a: [f32; 4]) -> f32 {
+    unsafe fn store_least(self, p: *mut f32, _: usize, a: [f32; 4]) {
         let least = |a: f32, b: f32| if a < b { a } else { b };
-        least(least(a[0], a[1]), least(a[2], a[3]))
+        // SAFETY: the caller's contract.
+        unsafe { p.write(least(least(a[0], a[1]), least(a[2], a[3]))) }
     }
 
     #[inline(always)]
@@ -229,6 +234,13 @@ impl Simd for Scalar4 {
     #[inline(always)]
     fn sub_i(self, a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
         lanes!(a, b => a.wrapping_sub(b))
+    }
+    #[inline(always)]
+    fn sub_sat(self, a: [i32; 4], b: [i32; 4]) -> [i32; 4] {
+        lanes!(a, b => {
+            let half = |shift: u32| ((a as u32 >> shift) as u16).saturating_sub((b as u32 >> shift) as u16);
+            (u32::from(half(16)) << 16 | u32::from(half(0))) as i32
+        })
     }
     #[inline(always)]
     fn and(self, a: [i32; 4], b: [i32; 4]) -> [i32; 4] {

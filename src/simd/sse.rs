@@ -15,14 +15,14 @@ pub(super) struct Sse41(());
 
 pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
     // Every x86-64 processor has SSE2: the token needs no more proof.
-    job.run(Pair(Sse2(())), Pair(Sse2(())))
+    job.run(Pair(Sse2(())))
 }
 
 /// # Safety
 /// The processor has SSSE3 and SSE4.1.
 #[target_feature(enable = "sse4.1,ssse3")]
 pub(super) unsafe fn enter_sse41<J: Job>(job: J) -> J::Output {
-    job.run(Pair(Sse41(())), Pair(Sse41(())))
+    job.run(Pair(Sse41(())))
 }
 
 /// # Safety
@@ -186,6 +186,11 @@ macro_rules! shared {
             unsafe { _mm_cvtps_epi32(a) }
         }
         #[inline(always)]
+        fn trunc(self, a: Self::F) -> __m128i {
+            // SAFETY: the token proves the instruction set.
+            unsafe { _mm_cvttps_epi32(a) }
+        }
+        #[inline(always)]
         fn to_f(self, a: Self::I) -> __m128 {
             // SAFETY: the token proves the instruction set.
             unsafe { _mm_cvtepi32_ps(a) }
@@ -201,11 +206,11 @@ macro_rules! shared {
             unsafe { _mm_castsi128_ps(a) }
         }
         #[inline(always)]
-        fn least(self, a: Self::F) -> f32 {
-            // SAFETY: the token proves the instruction set.
+        unsafe fn store_least(self, p: *mut f32, _: usize, a: Self::F) {
+            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let m = _mm_min_ps(a, _mm_movehl_ps(a, a));
-                _mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m)))
+                p.write(_mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
             }
         }
         #[inline(always)]
@@ -217,6 +222,11 @@ macro_rules! shared {
         fn sub_i(self, a: Self::I, b: Self::I) -> __m128i {
             // SAFETY: the token proves the instruction set.
             unsafe { _mm_sub_epi32(a, b) }
+        }
+        #[inline(always)]
+        fn sub_sat(self, a: Self::I, b: Self::I) -> __m128i {
+            // SAFETY: the token proves the instruction set.
+            unsafe { _mm_subs_epu16(a, b) }
         }
         #[inline(always)]
         fn and(self, a: Self::I, b: Self::I) -> __m128i {
@@ -247,8 +257,8 @@ macro_rules! shared {
         fn ones_shl(self, count: Self::I) -> __m128i {
             // SAFETY: the token proves the instruction set.
             unsafe {
-                // There is no shift by a count of each lane's own: 2^count through the exponent of a float. The
-                // conversion gives 0x80000000 for 2^31 as for 2^32, so the latter is masked away.
+                // There is no shift by a count of each lane's own: 2^count through the exponent of a float. What comes
+                // of counts beyond 31 is masked away.
                 let power =
                     _mm_cvttps_epi32(_mm_castsi128_ps(_mm_slli_epi32::<23>(_mm_add_epi32(count, _mm_set1_epi32(127)))));
                 let ones = _mm_sub_epi32(_mm_setzero_si128(), power);

@@ -1,11 +1,46 @@
-//! Sixteen lanes of AVX-512, for vertices and triangles; a `D` is two registers.
+//! AVX-512 (F, BW, DQ, VL), sixteen lanes. Masks are mask registers; a `D` is two registers.
 
 use core::arch::x86_64::*;
 
-use super::{Avx512Wide, apart};
-use crate::simd::{Apart, Simd};
+use super::{Apart, Job, Simd};
 
-impl Simd for Avx512Wide {
+#[derive(Clone, Copy)]
+pub(super) struct Avx512(());
+
+/// # Safety
+/// The processor has AVX-512 F, BW, DQ and VL, BMI1, BMI2, LZCNT and POPCNT.
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
+    job.run(Avx512(()))
+}
+
+/// # Safety
+/// As [`enter`].
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[inline(never)]
+unsafe fn apart<S, J: Apart<S>>(s: S, job: J) -> J::Output {
+    job.run(s)
+}
+
+/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, for which the
+/// instruction needs none.
+///
+/// # Safety
+/// The processor has the instruction set.
+#[inline]
+#[target_feature(enable = "avx512f")]
+unsafe fn ones_shl(count: __m512i) -> __m512i {
+    let ones = _mm512_set1_epi32(-1);
+    let shifted;
+    // SAFETY: registers only.
+    unsafe {
+        core::arch::asm!("vpsllvd {}, {}, {}", lateout(zmm_reg) shifted, in(zmm_reg) ones, in(zmm_reg) count,
+            options(pure, nomem, nostack, preserves_flags));
+    }
+    shifted
+}
+
+impl Simd for Avx512 {
     const LANES: usize = 16;
     type F = __m512;
     type I = __m512i;
@@ -70,6 +105,11 @@ impl Simd for Avx512Wide {
     unsafe fn gather(self, p: *const f32, index: __m512i) -> __m512 {
         // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_i32gather_ps::<4>(index, p) }
+    }
+    #[inline(always)]
+    unsafe fn lookup(self, table: *const f32, index: __m512i) -> __m512 {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table)) }
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m512 {
@@ -211,6 +251,11 @@ impl Simd for Avx512Wide {
         unsafe { _mm512_cvtps_epi32(a) }
     }
     #[inline(always)]
+    fn trunc(self, a: Self::F) -> __m512i {
+        // SAFETY: the token proves the instruction set.
+        unsafe { _mm512_cvttps_epi32(a) }
+    }
+    #[inline(always)]
     fn to_f(self, a: Self::I) -> __m512 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cvtepi32_ps(a) }
@@ -226,9 +271,16 @@ impl Simd for Avx512Wide {
         unsafe { _mm512_castsi512_ps(a) }
     }
     #[inline(always)]
-    fn least(self, a: Self::F) -> f32 {
-        // SAFETY: the token proves the instruction set.
-        unsafe { _mm512_reduce_min_ps(a) }
+    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: __m512) {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            // Within the halves of the register.
+            let m = _mm512_min_ps(a, _mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
+            let m = _mm512_min_ps(m, _mm512_permute_ps::<0b01_00_11_10>(m));
+            let m = _mm512_min_ps(m, _mm512_permute_ps::<0b10_11_00_01>(m));
+            p.write(_mm512_cvtss_f32(m));
+            p.add(pitch).write(_mm_cvtss_f32(_mm512_extractf32x4_ps::<2>(m)));
+        }
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> __m512i {
@@ -239,6 +291,11 @@ impl Simd for Avx512Wide {
     fn sub_i(self, a: Self::I, b: Self::I) -> __m512i {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sub_epi32(a, b) }
+    }
+    #[inline(always)]
+    fn sub_sat(self, a: Self::I, b: Self::I) -> __m512i {
+        // SAFETY: the token proves the instruction set.
+        unsafe { _mm512_subs_epu16(a, b) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> __m512i {
@@ -283,7 +340,7 @@ impl Simd for Avx512Wide {
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> __m512i {
         // SAFETY: the token proves the instruction set.
-        unsafe { _mm512_sllv_epi32(_mm512_set1_epi32(-1), count) }
+        unsafe { ones_shl(count) }
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> __mmask16 {

@@ -1,0 +1,296 @@
+//! Strips: the rows of tiles that triangles reach, and which of their tiles are open.
+//!
+//! A vector of triangles becomes a list of strips, in order; a vector of strips at a time, their edges bound which
+//! tiles a strip reaches; and the tiles whose least depth does not hide the triangle become one flat list. None of the
+//! loops has a branch that depends on the scene. The bounds are made of the edges in f32, widened by what rounding
+//! may be off, so that they may name a tile too many but never one too few.
+
+use core::mem::MaybeUninit;
+
+use super::batch::Batch;
+use super::traverse::TileStep;
+use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
+use crate::simd::{MAX_LANES, Simd};
+
+/// Strips taken at a time: those of sixteen triangles, mostly.
+pub(super) const STRIPS: usize = 64;
+/// Tiles taken at a time.
+const TILES: usize = 192;
+/// With those of the last vector.
+pub(super) const MAX_TILES: usize = TILES + MAX_LANES;
+/// No tile's least depth is smaller.
+const CLOSED: f32 = -2.0;
+/// Eight roundings: of a constant, a slope, their product and sum, with room.
+const WIDEN: f32 = 8.0 / (1 << 24) as f32;
+
+pub(super) const PLACE_SHIFT: i32 = 16;
+const LOW: u32 = (1 << PLACE_SHIFT) - 1;
+
+type Words = [MaybeUninit<u32>; STRIPS + MAX_LANES];
+type Floats = [MaybeUninit<f32>; STRIPS + MAX_LANES];
+
+/// Rows of tiles that a vector takes at once: sixteen lanes are sixteen rows of pixels, which are two.
+#[inline(always)]
+pub(super) const fn height<T: Simd>() -> u32 {
+    (T::LANES / SUB_TILES) as u32
+}
+
+/// Room for the lists; not initialised.
+#[repr(C, align(64))]
+pub(super) struct Lists {
+    /// Triangle's lane and, of a vector's height, row of tiles.
+    place: Words,
+    /// The strip's number and its first tile's column.
+    first: Words,
+    /// Tiles, of which there may be none.
+    count: Words,
+    /// The triangle's nearest depth where the strip has the row of tiles, else [`CLOSED`]; of sixteen lanes, the upper
+    /// row and the lower.
+    upper: Floats,
+    lower: Floats,
+    /// Strips with an open tile.
+    opened: [MaybeUninit<u32>; STRIPS + 1],
+    /// Number of the strip and column of every open tile.
+    tiles: [MaybeUninit<u32>; TILES + MAX_LANES],
+}
+
+/// The strips of some triangles, and how far they were taken.
+pub(super) struct Strips<'a> {
+    lists: &'a mut Lists,
+    /// Triangles whose strips were not listed yet, and the row to go on with of the first.
+    todo: u32,
+    row: u32,
+    /// Strips listed, the one to go on with, and of it the tile.
+    listed: usize,
+    next: usize,
+    tile: u32,
+}
+
+/// What is open at a time.
+pub(super) struct Open {
+    pub strips: usize,
+    pub tiles: usize,
+}
+
+impl<'a> Strips<'a> {
+    #[inline(always)]
+    pub fn new(lists: &'a mut MaybeUninit<Lists>, triangles: u32) -> Self {
+        // SAFETY: every field is an array of `MaybeUninit`.
+        let lists = unsafe { lists.assume_init_mut() };
+        Self { lists, todo: triangles, row: 0, listed: 0, next: 0, tile: 0 }
+    }
+
+    /// Lane of the triangle, and row of tiles, in rows of a vector's height, of a strip.
+    #[inline(always)]
+    pub fn place(&self, strip: usize) -> (usize, u32) {
+        // SAFETY: the strips up to `listed` were written, and only those are asked for.
+        let word = unsafe { self.lists.place.get_unchecked(strip).assume_init() };
+        ((word >> PLACE_SHIFT) as usize, word & LOW)
+    }
+
+    /// The number of the `k`th strip that has an open tile.
+    #[inline(always)]
+    pub fn opened(&self, k: usize) -> usize {
+        // SAFETY: only those that `next` counted are asked for.
+        unsafe { self.lists.opened.get_unchecked(k).assume_init() as usize }
+    }
+
+    /// Number of the strip, and column, of the `k`th open tile.
+    #[inline(always)]
+    pub fn tile(&self, k: usize) -> (usize, u32) {
+        // SAFETY: only those that `next` counted are asked for.
+        let word = unsafe { self.lists.tiles.get_unchecked(k).assume_init() };
+        ((word >> PLACE_SHIFT) as usize, word & LOW)
+    }
+
+    /// Lists the next open tiles. Nothing: there are no more strips.
+    #[inline(always)]
+    pub fn next<T: Simd, S: TileStep<T>>(
+        &mut self,
+        t: T,
+        buffer: &Buffer,
+        clip: TileRect,
+        batch: &Batch,
+    ) -> Option<Open> {
+        if self.next == self.listed {
+            self.list::<T>(t, clip, batch);
+            if self.listed == 0 {
+                return None;
+            }
+            let mut k = 0;
+            while k < self.listed {
+                // SAFETY: `k` is below the number listed, and the list is padded.
+                unsafe { self.bound(t, clip, batch, k) };
+                k += T::LANES;
+            }
+        }
+        Some(self.open::<T, S>(t, buffer, clip))
+    }
+
+    /// Lists the strips of the next triangles.
+    #[inline(always)]
+    fn list<T: Simd>(&mut self, t: T, clip: TileRect, batch: &Batch) {
+        let (begin, end) = (clip.y0 / height::<T>(), clip.y1.div_ceil(height::<T>()));
+        let mut listed = 0;
+        let mut last = 0;
+        while self.todo != 0 && listed < STRIPS {
+            let lane = self.todo.trailing_zeros();
+            let k = lane as usize % MAX_LANES;
+            let first = (batch.tile_y0[k] / height::<T>()).max(begin);
+            let rows = (batch.tile_y1[k] / height::<T>() + 1).min(end).saturating_sub(first);
+            last = lane << PLACE_SHIFT | (first + self.row);
+            // SAFETY: there is room for a vector after `STRIPS`.
+            unsafe {
+                let place = self.lists.place.as_mut_ptr().add(listed).cast();
+                t.store_i(place, t.add_i(t.i(last as i32), t.iota()));
+            }
+            let taken = (rows - self.row).min(T::LANES as u32).min((STRIPS - listed) as u32);
+            listed += taken as usize;
+            self.row += taken;
+            if self.row == rows {
+                self.row = 0;
+                self.todo &= self.todo - 1;
+            }
+        }
+        // SAFETY: there is room for a vector after `STRIPS`.
+        unsafe { t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), t.i(last as i32)) };
+        (self.listed, self.next, self.tile) = (listed, 0, 0);
+    }
+
+    /// Bounds the tiles of a vector of strips from number `k` on.
+    ///
+    /// # Safety
+    /// `k` is below `STRIPS`, and as many places were written.
+    #[inline(always)]
+    unsafe fn bound<T: Simd>(&mut self, t: T, clip: TileRect, batch: &Batch, k: usize) {
+        // SAFETY: the caller's contract.
+        let place = unsafe { t.load_i(self.lists.place.as_ptr().add(k).cast()) };
+        let lane = t.sra::<PLACE_SHIFT>(place);
+        let row = t.and(place, t.i(LOW as i32));
+        // SAFETY: lanes of a batch, whose arrays hold any vector.
+        let of = |field: &[f32; MAX_LANES]| unsafe { t.lookup(field.as_ptr(), lane) };
+        let (column0, column1) = (of(&batch.column0), of(&batch.column1));
+        // First and last row of pixels.
+        let top = t.mul(t.to_f(row), t.f((height::<T>() * TILE_HEIGHT) as f32));
+        let y0 = t.max(top, of(&batch.row0));
+        let bottom = t.add(top, t.f((height::<T>() * TILE_HEIGHT) as f32));
+        let y1 = t.sub(t.min(bottom, of(&batch.row1)), t.f(1.0));
+        let span = Span { t, y0, y1 };
+
+        let edges = &batch.rounded;
+        let [left, _] = span.bounds(of(&edges.left), of(&edges.left_slope));
+        let [_, right] = span.bounds(of(&edges.right), of(&edges.right_slope));
+        let slope = of(&edges.middle_slope);
+        let [middle_left, _] = span.bounds(of(&edges.middle_left), slope);
+        let [_, middle_right] = span.bounds(of(&edges.middle_right), slope);
+        let left = t.min(t.max(t.max(left, middle_left), column0), column1);
+        let right = t.max(t.min(t.min(right, middle_right), column1), column0);
+        // Events are rounded down.
+        let (left, right) = (t.trunc(left), t.trunc(right));
+        let first = t.max_i(t.sra::<5>(left), t.i(clip.x0 as i32));
+        let end = t.sra::<5>(t.add_i(right, t.i(TILE_WIDTH as i32 - 1)));
+        let end = t.min_i(end, t.i(clip.x1 as i32));
+        let count = t.max_i(t.select_i(t.gt_i(right, left), t.sub_i(end, first), t.i(0)), t.i(0));
+
+        let nearest = of(&batch.nearest);
+        let number = t.shl::<PLACE_SHIFT>(t.add_i(t.i(k as i32), t.iota()));
+        // SAFETY: there is room for a vector after `STRIPS`.
+        unsafe {
+            t.store_i(self.lists.first.as_mut_ptr().add(k).cast(), t.or(number, first));
+            t.store_i(self.lists.count.as_mut_ptr().add(k).cast(), count);
+            if height::<T>() == 1 {
+                t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), nearest);
+            } else {
+                let middle = t.add(top, t.f(TILE_HEIGHT as f32));
+                let closed = t.f(CLOSED);
+                let upper = t.select(t.lt(y0, middle), nearest, closed);
+                let lower = t.select(t.le(middle, y1), nearest, closed);
+                t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), upper);
+                t.store_f(self.lists.lower.as_mut_ptr().add(k).cast(), lower);
+            }
+        }
+    }
+
+    /// Lists open tiles, as many as there is room for.
+    #[inline(always)]
+    fn open<T: Simd, S: TileStep<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect) -> Open {
+        let whole = clip == buffer.all_tiles();
+        let (mut strips, mut tiles) = (0, 0);
+        while self.next < self.listed && tiles < TILES {
+            let k = self.next;
+            let lists = &mut *self.lists;
+            // SAFETY: the strips listed were bounded; room for the lists is checked by the loop, and after the last
+            // there is room for a vector. Least depths are read of tiles of the buffer, where there is room for a
+            // vector after the last, and where another thread may be writing, no others.
+            unsafe {
+                let first = lists.first.get_unchecked(k).assume_init() + self.tile;
+                let count = lists.count.get_unchecked(k).assume_init() - self.tile;
+                let (_, row) = {
+                    let word = lists.place.get_unchecked(k).assume_init();
+                    (word >> PLACE_SHIFT, word & LOW)
+                };
+                let least = buffer.least_of(first & LOW, row * height::<T>());
+                let inside = t.first(count as usize);
+                let of = |p: *const f32| {
+                    if whole { t.load_f(p) } else { some_of(t, p, count) }
+                };
+                let mut open = S::open(t, of(least), t.f(lists.upper.get_unchecked(k).assume_init()));
+                if height::<T>() == 2 {
+                    let lower = of(least.add(buffer.tiles_w() as usize));
+                    open = t.or_m(open, S::open(t, lower, t.f(lists.lower.get_unchecked(k).assume_init())));
+                }
+                let tile = t.add_i(t.i(first as i32), t.iota());
+                let n = t.compress(lists.tiles.as_mut_ptr().add(tiles).cast(), t.and_m(open, inside), tile);
+                tiles += n;
+                // A strip whose tiles were opened in several goes is named by each of them.
+                lists.opened.get_unchecked_mut(strips).write(k as u32);
+                strips += usize::from(n != 0);
+                if count <= T::LANES as u32 {
+                    self.next += 1;
+                    self.tile = 0;
+                } else {
+                    self.tile += T::LANES as u32;
+                    if strips == STRIPS {
+                        break;
+                    }
+                }
+            }
+        }
+        Open { strips, tiles }
+    }
+}
+
+/// A vector of spans of rows of pixels, from the first to the last.
+struct Span<T: Simd> {
+    t: T,
+    y0: T::F,
+    y1: T::F,
+}
+
+impl<T: Simd> Span<T> {
+    /// The least and the largest that the event of an edge can be in the span.
+    #[inline(always)]
+    fn bounds(&self, constant: T::F, slope: T::F) -> [T::F; 2] {
+        let t = self.t;
+        let (first, last) = (t.mul(slope, self.y0), t.mul(slope, self.y1));
+        let widen = t.mul(t.add(t.abs(constant), t.abs(last)), t.f(WIDEN));
+        let low = t.sub(t.add(constant, t.min(first, last)), widen);
+        let high = t.add(t.add(constant, t.max(first, last)), widen);
+        [low, high]
+    }
+}
+
+/// The first `n` floats from `p` on, and nothing else: beside them another thread may be writing.
+///
+/// # Safety
+/// They can be read.
+#[inline(always)]
+unsafe fn some_of<T: Simd>(t: T, p: *const f32, n: u32) -> T::F {
+    let mut lanes = [0.0; MAX_LANES];
+    for k in 0..T::LANES.min(n as usize) {
+        // SAFETY: the caller's contract.
+        lanes[k] = unsafe { *p.add(k) };
+    }
+    // SAFETY: the array holds a vector.
+    unsafe { t.load_f(lanes.as_ptr()) }
+}
