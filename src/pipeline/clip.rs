@@ -9,8 +9,8 @@
 
 use super::Facing;
 use super::project::{Camera, FARTHEST_W, SHIFT};
-use super::scratch::{CHUNK_VERTICES, Scratch};
 use super::setup::Purpose;
+use super::survivors::Survivors;
 
 /// A triangle clipped by five planes has at most eight corners, which six triangles fan out from.
 pub(super) const MAX_VERTICES: usize = 8;
@@ -157,27 +157,13 @@ fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
 impl Polygon {
     /// Adds the polygon's fan to the survivors. True when part of it is on the screen and faces the eye.
     #[inline(never)]
-    pub fn emit(
-        &self,
-        purpose: Purpose,
-        camera: &Camera,
-        facing: Facing,
-        scratch: &mut Scratch,
-        survivors: &mut usize,
-        clipped: &mut usize,
-    ) -> bool {
-        let first = CHUNK_VERTICES + *clipped;
-        for (k, &corner) in self.corners[..self.len].iter().enumerate() {
-            scratch.set_vertex(first + k, corner);
-        }
-        *clipped += self.len;
+    pub fn emit(&self, purpose: Purpose, camera: &Camera, facing: Facing, survivors: &mut Survivors) -> bool {
         let mut in_view = false;
         for k in 1..self.len - 1 {
             if self.faces(purpose, facing, k) && self.on_screen(camera, k) {
                 in_view = true;
-                let corner = |k: usize| (first + k) as u32;
-                scratch.survivors[*survivors].write(facing.pack([corner(0), corner(k), corner(k + 1)]));
-                *survivors += 1;
+                let [a, b, c] = [self.corners[0], self.corners[k], self.corners[k + 1]];
+                survivors.push(&if facing.swap { [a, c, b] } else { [a, b, c] });
             }
         }
         in_view

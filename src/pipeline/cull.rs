@@ -5,10 +5,11 @@
 
 use super::batch::Batch;
 use super::clip::{self, Clipped};
-use super::last_step::{LastStep, take_survivors};
+use super::last_step::{All, LastStep, take_survivors};
 use super::project::{Camera, Reader, SHIFT, bit_where, outcode, project};
-use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, CLIPPED_VERTICES, LOCAL_BITS, MAX_LANES, SURVIVORS, Scratch};
+use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, MAX_LANES, Scratch};
 use super::setup::{Purpose, Setup};
+use super::survivors::{Corner, ROOM, Survivors};
 use super::{Facing, Mesh};
 use crate::CullingResult;
 use crate::buffer::Buffer;
@@ -19,6 +20,9 @@ use crate::statistics::Tally;
 const CLEARLY: f32 = 2.0;
 /// Relative error of a doubled area in f32, with room: eight roundings.
 const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
+
+/// With more survivors than this there may be no room for those of another vector of triangles.
+const FULL: usize = ROOM - MAX_LANES * clip::MAX_TRIANGLES;
 
 /// The least and the largest of some indices, of which there is at least one.
 pub(super) struct IndexRange<'a>(pub &'a [u32]);
@@ -84,75 +88,65 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let facing = Facing::new(mesh.options.winding, camera);
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
+    let mut survivors = Survivors::new();
     let mut batch = Batch::new();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, facing, shared: false };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: facing.both, shared: false };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);
     let (mut position, mut chunk_end, mut numbering) = (0, 0, Numbering::From(0));
 
-    while position < triangles {
+    while position < triangles && !unprojectable {
         if position == chunk_end {
             // SAFETY: the pipeline's caller vouches for the vertices.
             (chunk_end, numbering) = unsafe { project_chunk(s, camera, &reader, mesh.triangles, position, scratch) };
         }
-        let (mut survivors, mut clipped) = (0, 0);
-        while position < chunk_end
-            && survivors + S::LANES * clip::MAX_TRIANGLES <= SURVIVORS
-            && clipped + S::LANES * clip::MAX_VERTICES <= CLIPPED_VERTICES
-        {
-            let count = S::LANES.min(chunk_end - position);
-            // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
-            let group = unsafe { Group::new(s, mesh.triangles, position, count, numbering, facing, scratch) };
-            let sieve = group.sieve(s, L::PURPOSE, buffer, camera, facing);
-            in_view |= sieve.in_view;
-            if sieve.irregular == 0 {
-                // SAFETY: there is room for a vector after `SURVIVORS`.
-                survivors += unsafe {
-                    s.compress(scratch.survivors.as_mut_ptr().add(survivors).cast(), sieve.kept, group.packed)
-                };
-            } else {
-                let kept = s.mask_bits(sieve.kept);
-                let mut packed = [0; MAX_LANES];
-                // SAFETY: sixteen words hold a vector.
-                unsafe { s.store_i(packed.as_mut_ptr(), group.packed) };
-                for lane in 0..count {
-                    if kept >> lane & 1 == 1 {
-                        scratch.survivors[survivors].write(packed[lane]);
-                        survivors += 1;
-                    } else if sieve.irregular >> lane & 1 == 1 {
-                        let at = 3 * (position + lane);
-                        let corners = [mesh.triangles[at], mesh.triangles[at + 1], mesh.triangles[at + 2]];
-                        // SAFETY: the pipeline's caller vouches for the vertices.
-                        let (clip, screen) = unsafe { corners_of(s, camera, &reader, corners) };
-                        let polygon = clip::triangle(L::PURPOSE, camera, &clip, &screen);
-                        match polygon {
-                            Clipped::Nothing => {}
-                            Clipped::Dropped => tally.dropped += 1,
-                            Clipped::Unprojectable => {
-                                unprojectable = true;
-                                break;
-                            }
-                            Clipped::Polygon(polygon) => {
-                                in_view |=
-                                    polygon.emit(L::PURPOSE, camera, facing, scratch, &mut survivors, &mut clipped);
-                            }
+        let count = S::LANES.min(chunk_end - position);
+        // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
+        let group = unsafe { Group::new(s, mesh.triangles, position, count, numbering, facing, scratch) };
+        let sieve = group.sieve(s, L::PURPOSE, buffer, camera, facing);
+        in_view |= sieve.in_view;
+        if sieve.irregular == 0 {
+            // SAFETY: below `FULL` there is room.
+            unsafe { survivors.append(s, sieve.kept, &group.corners) };
+        } else {
+            let kept = s.mask_bits(sieve.kept);
+            let mut lanes = [[0.0; MAX_LANES]; 9];
+            for k in 0..9 {
+                // SAFETY: sixteen floats hold a vector.
+                unsafe { s.store_f(lanes[k].as_mut_ptr(), group.corners[k / 3][k % 3]) };
+            }
+            for lane in 0..count {
+                if kept >> lane & 1 == 1 {
+                    let corner = |k: usize| [lanes[3 * k][lane], lanes[3 * k + 1][lane], lanes[3 * k + 2][lane]];
+                    survivors.push(&[corner(0), corner(1), corner(2)]);
+                } else if sieve.irregular >> lane & 1 == 1 {
+                    let at = 3 * (position + lane);
+                    let corners = [mesh.triangles[at], mesh.triangles[at + 1], mesh.triangles[at + 2]];
+                    // SAFETY: the pipeline's caller vouches for the vertices.
+                    let (clip, screen) = unsafe { corners_of(s, camera, &reader, corners) };
+                    match clip::triangle(L::PURPOSE, camera, &clip, &screen) {
+                        Clipped::Nothing => {}
+                        Clipped::Dropped => tally.dropped += 1,
+                        Clipped::Unprojectable => {
+                            unprojectable = true;
+                            break;
+                        }
+                        Clipped::Polygon(polygon) => {
+                            in_view |= polygon.emit(L::PURPOSE, camera, facing, &mut survivors);
                         }
                     }
                 }
             }
-            position += count;
-            if unprojectable {
-                break;
-            }
         }
-
-        // SAFETY: survivors name vertices of this chunk, or of its clipped triangles.
-        let more = unsafe { take_survivors(setup, scratch, survivors, &mut batch, last, &mut tally) };
-        // What comes before what cannot be projected was compared first, so that the counts do not depend on the lanes.
-        if !more || unprojectable {
+        position += count;
+        if survivors.len() > FULL && !take_survivors(setup, &mut survivors, All::No, &mut batch, last, &mut tally) {
             return (CullingResult::Visible, tally);
         }
+    }
+    // What comes before what cannot be projected is compared first, so that the counts do not depend on the lanes.
+    if !take_survivors(setup, &mut survivors, All::Yes, &mut batch, last, &mut tally) || unprojectable {
+        return (CullingResult::Visible, tally);
     }
     let result = match (in_view && last.found(), L::PURPOSE) {
         (false, _) => CullingResult::ViewCulled,
@@ -224,12 +218,10 @@ unsafe fn corners_of<S: Simd>(
     ([corner(0, 0), corner(0, 1), corner(0, 2)], [corner(3, 0), corner(3, 1), corner(3, 2)])
 }
 
-/// A vector of triangles: their corners' screen coordinates, and their local numbers as a survivor has them.
+/// A vector of triangles: their corners on the screen, in the order that setup takes if they face the eye.
 struct Group<S: Simd> {
     active: S::M,
-    packed: S::I,
-    x: [S::F; 3],
-    y: [S::F; 3],
+    corners: [Corner<S>; 3],
 }
 
 /// What a vector of triangles comes to.
@@ -255,45 +247,43 @@ impl<S: Simd> Group<S> {
         facing: Facing,
         scratch: &Scratch,
     ) -> Self {
-        let local = match numbering {
+        let mut padded = [0; 3 * MAX_LANES];
+        let (vertices, indices) = match numbering {
             Numbering::From(base) => {
-                let chunk = &indices[3 * position..3 * (position + count)];
-                let mut padded = [base; 3 * MAX_LANES];
-                // SAFETY: either the slice or the copy holds a vector of triangles.
-                let corners = unsafe {
-                    if count == S::LANES {
-                        s.load_triangles(chunk.as_ptr())
-                    } else {
-                        padded[..chunk.len()].copy_from_slice(chunk);
-                        s.load_triangles(padded.as_ptr())
-                    }
+                let group = &indices[3 * position..3 * (position + count)];
+                let indices = if count == S::LANES {
+                    group.as_ptr()
+                } else {
+                    padded.fill(base);
+                    padded[..group.len()].copy_from_slice(group);
+                    padded.as_ptr()
                 };
-                let base = s.i(base as i32);
-                [s.sub_i(corners[0], base), s.sub_i(corners[1], base), s.sub_i(corners[2], base)]
+                (scratch.from_base(base), indices)
             }
             Numbering::InOrder { first } => {
-                // Lanes beyond the last are of no account, but their numbers have to be in the scratch.
-                let last = s.i((position + count - first - 1) as i32);
-                let triangle = s.min_i(s.add_i(s.i((position - first) as i32), s.iota()), last);
-                let corner = s.add_i(triangle, s.add_i(triangle, triangle));
-                [corner, s.add_i(corner, s.i(1)), s.add_i(corner, s.i(2))]
+                // Lanes beyond the last are of no account, but have to be in the scratch.
+                for (k, index) in padded.iter_mut().enumerate() {
+                    *index = (k % (3 * count)) as u32 + 3 * (position - first) as u32;
+                }
+                (scratch.from_base(0), padded.as_ptr())
             }
         };
-        let [a, b, c] = local;
-        let (b, c) = if facing.swap { (c, b) } else { (b, c) };
-        let packed = s.or(a, s.or(s.shl::<{ LOCAL_BITS }>(b), s.shl::<{ 2 * LOCAL_BITS }>(c)));
-        // SAFETY: the caller's contract: local numbers of projected vertices.
-        unsafe {
-            let x = |k: S::I| s.gather(scratch.x.as_ptr().cast(), k);
-            let y = |k: S::I| s.gather(scratch.y.as_ptr().cast(), k);
-            Self { active: s.first(count), packed, x: [x(a), x(b), x(c)], y: [y(a), y(b), y(c)] }
-        }
+        let (second, third) = if facing.swap { (2, 1) } else { (1, 2) };
+        // SAFETY: the caller's contract: numbers of projected vertices, three a lane.
+        let corners = unsafe {
+            [
+                s.load_records(vertices, indices),
+                s.load_records(vertices, indices.add(second)),
+                s.load_records(vertices, indices.add(third)),
+            ]
+        };
+        Self { active: s.first(count), corners }
     }
 
     #[inline(always)]
     fn sieve(&self, s: S, purpose: Purpose, buffer: &Buffer, camera: &Camera, facing: Facing) -> Sieve<S> {
         let query = purpose == Purpose::Query;
-        let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
+        let [[x0, y0, _], [x1, y1, _], [x2, y2, _]] = self.corners;
         let is_number = |x: S::F| s.eq(x, x);
         let regular = s.and_m(is_number(x0), s.and_m(is_number(x1), is_number(x2)));
         let mut irregular = s.mask_bits(s.and_not_m(regular, self.active));
@@ -345,7 +335,7 @@ impl<S: Simd> Group<S> {
     fn code(&self, s: S, camera: &Camera, k: usize) -> S::I {
         let (low_row, high_row) =
             if camera.rows_run_down() { (outcode::ABOVE, outcode::BELOW) } else { (outcode::BELOW, outcode::ABOVE) };
-        let (x, y) = (self.x[k], self.y[k]);
+        let [x, y, _] = self.corners[k];
         let across = s.or(
             bit_where(s, s.lt(x, s.f(-CLEARLY)), outcode::LEFT),
             bit_where(s, s.lt(s.f(2.0 * camera.half_width + CLEARLY), x), outcode::RIGHT),

@@ -5,9 +5,9 @@ use core::mem::MaybeUninit;
 
 use super::batch::Batch;
 use super::edges::bits;
-use super::scratch::Scratch;
 use super::setup::{Alive, Purpose, Setup, set_up};
 use super::strips::MAX_TILES;
+use super::survivors::Survivors;
 use super::traverse::{Lists, TileStep, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
@@ -31,35 +31,34 @@ pub(super) trait LastStep {
     }
 }
 
-/// Sets up the first `survivors` of the scratch, vector by vector, and takes them to the last step. False: no more are
-/// needed.
-///
-/// # Safety
-/// Each survivor is three local numbers of regular vertices that were written to the scratch; there are at most as
-/// many as it is made for.
+/// Are survivors that do not fill a vector taken, too, or do they wait for more?
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum All {
+    Yes,
+    No,
+}
+
+/// Sets up survivors, vector by vector, and takes them to the last step. False: no more are needed.
 #[inline(always)]
-pub(super) unsafe fn take_survivors<S: Simd, L: LastStep>(
+pub(super) fn take_survivors<S: Simd, L: LastStep>(
     setup: Setup<'_, S>,
-    scratch: &mut Scratch,
-    survivors: usize,
+    survivors: &mut Survivors,
+    all: All,
     batch: &mut Batch,
     last: &mut L,
     tally: &mut Tally,
 ) -> bool {
-    scratch.pad(survivors);
+    let end = if all == All::Yes { survivors.len() } else { survivors.len() / S::LANES * S::LANES };
     let mut done = 0;
-    while done < survivors {
-        let n = S::LANES.min(survivors - done);
-        // SAFETY: the caller's contract; there is room for a vector after the last survivor.
-        let alive = unsafe {
-            let first = scratch.survivors.as_ptr().add(done).cast();
-            set_up(setup, scratch, first, n, batch)
-        };
+    while done < end {
+        let n = S::LANES.min(end - done);
+        let alive = set_up(setup, survivors.vector(setup.s, done), n, batch);
         if alive.rasterized != 0 && !last.take(batch, &alive, tally) {
             return false;
         }
         done += n;
     }
+    survivors.forget(setup.s, end);
     true
 }
 

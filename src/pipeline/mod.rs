@@ -25,6 +25,7 @@ mod project;
 mod scratch;
 mod setup;
 mod strips;
+mod survivors;
 mod traverse;
 
 use crate::bins::TriList;
@@ -59,12 +60,6 @@ impl Facing {
         // Counter-clockwise with y up looks the same on the screen, where rows may run downwards.
         let front_is_counter_clockwise = winding != BackfaceWinding::CounterClockwise;
         Self { swap: front_is_counter_clockwise == camera.rows_run_down(), both: winding == BackfaceWinding::None }
-    }
-
-    /// The local numbers of a triangle's corners as a survivor has them.
-    #[inline(always)]
-    fn pack(self, [a, b, c]: [u32; 3]) -> u32 {
-        scratch::pack(if self.swap { [a, c, b] } else { [a, b, c] })
     }
 }
 

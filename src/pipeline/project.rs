@@ -256,9 +256,7 @@ impl<S: Simd> Reader<S> {
             // SAFETY: the caller's contract; local + LANES <= count.
             unsafe {
                 let [x, y, z] = project(s, camera, self.load(first + local as u32, local + S::LANES < count));
-                s.store_f(scratch.x.as_mut_ptr().add(local).cast(), x);
-                s.store_f(scratch.y.as_mut_ptr().add(local).cast(), y);
-                s.store_f(scratch.z.as_mut_ptr().add(local).cast(), z);
+                s.store_records(scratch.vertex(local), [x, y, z]);
             }
             local += S::LANES;
             if local >= count {
@@ -301,9 +299,7 @@ impl<S: Simd> Reader<S> {
             let v = self.load_each(indices);
             let v = [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())];
             let [x, y, z] = project(s, camera, self.to_clip(v));
-            s.store_f(scratch.x.as_mut_ptr().add(local).cast(), x);
-            s.store_f(scratch.y.as_mut_ptr().add(local).cast(), y);
-            s.store_f(scratch.z.as_mut_ptr().add(local).cast(), z);
+            s.store_records(scratch.vertex(local), [x, y, z]);
         }
     }
 }

@@ -18,10 +18,9 @@
 //! anchor adds `4 u (Z + gx ex + gy ey)`, the walk to the sub-tile and its corner `9 u` times the same.
 //! The margin is `32 u (Z + gx ex + gy ey)`. On slivers it is large, and the clamp decides.
 
-use super::Facing;
 use super::batch::Batch;
 use super::edges;
-use super::scratch::{LOCAL_BITS, Scratch};
+use super::survivors::Corner;
 use crate::buffer::Buffer;
 use crate::simd::Simd;
 
@@ -44,9 +43,6 @@ pub(super) enum Purpose {
     Bin,
 }
 
-/// A corner: x, y, 1/w.
-type Corner<S> = [<S as Simd>::F; 3];
-
 /// What setup found, a bit a lane.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Alive {
@@ -62,42 +58,25 @@ pub(super) struct Setup<'a, S> {
     pub s: S,
     pub purpose: Purpose,
     pub buffer: &'a Buffer,
-    pub facing: Facing,
+    /// Corners may be in either order.
+    pub both_sides: bool,
     /// Other threads may be drawing elsewhere in the buffer: none of it is looked at.
     pub shared: bool,
 }
 
-/// Sets up the first `n` of the survivors at `survivors`.
-///
-/// # Safety
-/// `survivors` can be read for `LANES` words, each three local numbers of vertices in the scratch, of which the
-/// first `n` are regular ones that were written.
+/// Sets up the first `n` of a vector of triangles; the others are regular triangles, too.
 #[inline(always)]
-pub(super) unsafe fn set_up<S: Simd>(
-    setup: Setup<'_, S>,
-    scratch: &Scratch,
-    survivors: *const u32,
-    n: usize,
-    batch: &mut Batch,
-) -> Alive {
-    let Setup { s, purpose, buffer, facing, shared } = setup;
+pub(super) fn set_up<S: Simd>(setup: Setup<'_, S>, [a, b, c]: [Corner<S>; 3], n: usize, batch: &mut Batch) -> Alive {
+    let Setup { s, purpose, buffer, both_sides, shared } = setup;
     let query = purpose == Purpose::Query;
-    // SAFETY: the caller's contract.
-    let packed = unsafe { s.load_i(survivors) };
     let active = s.first(n);
-    let mask = s.i((1 << LOCAL_BITS) - 1);
-    let i0 = s.and(packed, mask);
-    let i1 = s.and(s.sra::<{ LOCAL_BITS }>(packed), mask);
-    let i2 = s.and(s.sra::<{ 2 * LOCAL_BITS }>(packed), mask);
-    // SAFETY: local numbers have ten bits, so that every gather stays inside of the scratch.
-    let (a, b, c) = unsafe { (corner(s, scratch, i0), corner(s, scratch, i1), corner(s, scratch, i2)) };
 
     // The topmost corner first.
     let b_top = s.and_m(s.lt(b[1], a[1]), s.le(b[1], c[1]));
     let c_top = s.and_m(s.lt(c[1], a[1]), s.lt(c[1], b[1]));
     let (v0, mut v1, mut v2) =
         (turn(s, b_top, c_top, a, b, c), turn(s, b_top, c_top, b, c, a), turn(s, b_top, c_top, c, a, b));
-    if facing.both {
+    if both_sides {
         let back = s.lt(doubled_area(s, v0, v1, v2).0, s.f(0.0));
         for k in 0..3 {
             (v1[k], v2[k]) = (s.select(back, v2[k], v1[k]), s.select(back, v1[k], v2[k]));
@@ -254,20 +233,6 @@ pub(super) unsafe fn set_up<S: Simd>(
     store!(z_clamp, if query { nearest } else { s.mul(farthest, s.f(1.0 - VERTEX_MARGIN)) });
     store!(nearest, nearest);
     found
-}
-
-/// # Safety
-/// Each index is below 1024; lanes whose vertex was never written hold anything.
-#[inline(always)]
-unsafe fn corner<S: Simd>(s: S, scratch: &Scratch, index: S::I) -> Corner<S> {
-    // SAFETY: the caller's contract.
-    unsafe {
-        [
-            s.gather(scratch.x.as_ptr().cast(), index),
-            s.gather(scratch.y.as_ptr().cast(), index),
-            s.gather(scratch.z.as_ptr().cast(), index),
-        ]
-    }
 }
 
 /// The largest coordinate in size.

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Apart, Job, Simd};
+use super::{Apart, Job, Simd, record};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
@@ -158,6 +158,40 @@ impl Simd for Avx2 {
                 _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
                 _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
             ]
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m256; 3] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
+            // Vertices k and k + 4 in the halves of one register.
+            let (a, b) = (_mm256_set_m128(load(4), load(0)), _mm256_set_m128(load(5), load(1)));
+            let (c, d) = (_mm256_set_m128(load(6), load(2)), _mm256_set_m128(load(7), load(3)));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+            ]
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m256; 3]) {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (xy, xy_high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
+            let (zz, zz_high) = (_mm256_unpacklo_ps(z, z), _mm256_unpackhi_ps(z, z));
+            // Records k and k + 4 in the halves of one register.
+            let a = _mm256_shuffle_ps::<0b01_00_01_00>(xy, zz);
+            let b = _mm256_shuffle_ps::<0b11_10_11_10>(xy, zz);
+            let c = _mm256_shuffle_ps::<0b01_00_01_00>(xy_high, zz_high);
+            let d = _mm256_shuffle_ps::<0b11_10_11_10>(xy_high, zz_high);
+            _mm256_storeu_ps(p, _mm256_permute2f128_ps::<0x20>(a, b));
+            _mm256_storeu_ps(p.add(8), _mm256_permute2f128_ps::<0x20>(c, d));
+            _mm256_storeu_ps(p.add(16), _mm256_permute2f128_ps::<0x31>(a, b));
+            _mm256_storeu_ps(p.add(24), _mm256_permute2f128_ps::<0x31>(c, d));
         }
     }
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Apart, Job, Simd};
+use super::{Apart, Job, Simd, record};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(());
@@ -179,6 +179,54 @@ impl Simd for Avx512 {
                 _mm512_shuffle_f32x4::<0b01_00_01_00>(ab_high, cd_high),
                 _mm512_shuffle_f32x4::<0b11_10_11_10>(ab_high, cd_high),
             ]
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m512; 3] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
+            // Vertices k, k + 4, k + 8 and k + 12 in the quarters of one register.
+            let (a, b, c, d) = (
+                _mm512_castps128_ps512(load(0)),
+                _mm512_castps128_ps512(load(1)),
+                _mm512_castps128_ps512(load(2)),
+                _mm512_castps128_ps512(load(3)),
+            );
+            let (a, b) = (_mm512_insertf32x4::<1>(a, load(4)), _mm512_insertf32x4::<1>(b, load(5)));
+            let (c, d) = (_mm512_insertf32x4::<1>(c, load(6)), _mm512_insertf32x4::<1>(d, load(7)));
+            let (a, b) = (_mm512_insertf32x4::<2>(a, load(8)), _mm512_insertf32x4::<2>(b, load(9)));
+            let (c, d) = (_mm512_insertf32x4::<2>(c, load(10)), _mm512_insertf32x4::<2>(d, load(11)));
+            let (a, b) = (_mm512_insertf32x4::<3>(a, load(12)), _mm512_insertf32x4::<3>(b, load(13)));
+            let (c, d) = (_mm512_insertf32x4::<3>(c, load(14)), _mm512_insertf32x4::<3>(d, load(15)));
+            let (ab, cd) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
+            [
+                _mm512_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm512_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm512_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+            ]
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m512; 3]) {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (xy, xy_high) = (_mm512_unpacklo_ps(x, y), _mm512_unpackhi_ps(x, y));
+            let (zz, zz_high) = (_mm512_unpacklo_ps(z, z), _mm512_unpackhi_ps(z, z));
+            // Records k, k + 4, k + 8 and k + 12 in the quarters of one register.
+            let a = _mm512_shuffle_ps::<0b01_00_01_00>(xy, zz);
+            let b = _mm512_shuffle_ps::<0b11_10_11_10>(xy, zz);
+            let c = _mm512_shuffle_ps::<0b01_00_01_00>(xy_high, zz_high);
+            let d = _mm512_shuffle_ps::<0b11_10_11_10>(xy_high, zz_high);
+            let (ab, ab_high) =
+                (_mm512_shuffle_f32x4::<0b01_00_01_00>(a, b), _mm512_shuffle_f32x4::<0b11_10_11_10>(a, b));
+            let (cd, cd_high) =
+                (_mm512_shuffle_f32x4::<0b01_00_01_00>(c, d), _mm512_shuffle_f32x4::<0b11_10_11_10>(c, d));
+            _mm512_storeu_ps(p, _mm512_shuffle_f32x4::<0b10_00_10_00>(ab, cd));
+            _mm512_storeu_ps(p.add(16), _mm512_shuffle_f32x4::<0b11_01_11_01>(ab, cd));
+            _mm512_storeu_ps(p.add(32), _mm512_shuffle_f32x4::<0b10_00_10_00>(ab_high, cd_high));
+            _mm512_storeu_ps(p.add(48), _mm512_shuffle_f32x4::<0b11_01_11_01>(ab_high, cd_high));
         }
     }
     #[inline(always)]

@@ -88,6 +88,15 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// `p` can be read for `4 * LANES` floats; any alignment.
     unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4];
+    /// The first three floats of the records of four floats that `index[0]`, `index[3]`, `index[6]`, ... name.
+    /// # Safety
+    /// `index` can be read for `3 * LANES - 2` words, and each of the records from `p` on; any alignment. `p` may be
+    /// the address that record 0 would have.
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [Self::F; 3];
+    /// Writes `LANES` records of four floats, the last of which may be anything.
+    /// # Safety
+    /// `p` can be written for `4 * LANES` floats; any alignment.
+    unsafe fn store_records(self, p: *mut f32, v: [Self::F; 3]);
     /// Writes the lanes in `m` to `p` without gaps and returns their number.
     /// # Safety
     /// `p` can be written for `LANES` values, whatever the mask.
@@ -164,6 +173,16 @@ pub(crate) trait Simd: Copy {
     fn div_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn min_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn max_d(self, a: Self::D, b: Self::D) -> Self::D;
+}
+
+/// Address of record `index[3 * lane]` of four floats.
+///
+/// # Safety
+/// The index can be read.
+#[inline(always)]
+unsafe fn record(p: *const f32, index: *const u32, lane: usize) -> *const f32 {
+    // SAFETY: the caller's contract.
+    p.wrapping_add(4 * unsafe { index.add(3 * lane).read_unaligned() } as usize)
 }
 
 /// A piece of the kernel that is compiled once for a token and called, not inlined, from wherever it is used.

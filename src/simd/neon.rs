@@ -4,7 +4,7 @@ use core::arch::aarch64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd};
+use super::{Apart, Job, Simd, record};
 
 #[derive(Clone, Copy)]
 pub(super) struct Neon(());
@@ -45,6 +45,22 @@ impl Simd for Neon {
     fn iota(self) -> int32x4_t {
         // SAFETY: the token proves the instruction set.
         unsafe { vld1q_s32([0, 1, 2, 3].as_ptr()) }
+    }
+    #[inline(always)]
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [float32x4_t; 3] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let load = |lane: usize| vld1q_f32(record(p, index, lane));
+            let (a, b, c, d) = (load(0), load(1), load(2), load(3));
+            let (ac, bd) = (vzip1q_f32(a, c), vzip1q_f32(b, d));
+            let (ac_high, bd_high) = (vzip2q_f32(a, c), vzip2q_f32(b, d));
+            [vzip1q_f32(ac, bd), vzip2q_f32(ac, bd), vzip1q_f32(ac_high, bd_high)]
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_records(self, p: *mut f32, [x, y, z]: [float32x4_t; 3]) {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { vst4q_f32(p, float32x4x4_t(x, y, z, z)) }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> float32x4_t {

@@ -57,6 +57,22 @@ impl<S: Simd> Simd for Pair<S> {
     }
 
     #[inline(always)]
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [Self::F; 3] {
+        // SAFETY: the caller's contract, half by half.
+        unsafe {
+            let (low, high) = (self.0.load_records(p, index), self.0.load_records(p, index.add(3 * S::LANES)));
+            [[low[0], high[0]], [low[1], high[1]], [low[2], high[2]]]
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_records(self, p: *mut f32, [x, y, z]: [Self::F; 3]) {
+        // SAFETY: the caller's contract, half by half.
+        unsafe {
+            self.0.store_records(p, [x[0], y[0], z[0]]);
+            self.0.store_records(p.add(4 * S::LANES), [x[1], y[1], z[1]]);
+        }
+    }
+    #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> Self::F {
         // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_f(p), self.0.load_f(p.add(S::LANES))] }

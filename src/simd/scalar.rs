@@ -1,7 +1,7 @@
 //! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
 
 use super::pair::Pair;
-use super::{Apart, Job, Simd};
+use super::{Apart, Job, Simd, record};
 
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
@@ -95,6 +95,26 @@ impl Simd for Scalar4 {
     #[inline(always)]
     fn iota(self) -> [i32; 4] {
         [0, 1, 2, 3]
+    }
+    #[inline(always)]
+    unsafe fn load_records(self, p: *const f32, index: *const u32) -> [[f32; 4]; 3] {
+        let mut v = [[0.0; 4]; 3];
+        for lane in 0..4 {
+            for k in 0..3 {
+                // SAFETY: the caller's contract.
+                v[k][lane] = unsafe { record(p, index, lane).add(k).read_unaligned() };
+            }
+        }
+        v
+    }
+    #[inline(always)]
+    unsafe fn store_records(self, p: *mut f32, v: [[f32; 4]; 3]) {
+        for lane in 0..4 {
+            for k in 0..3 {
+                // SAFETY: the caller's contract.
+                unsafe { p.add(4 * lane + k).write_unaligned(v[k][lane]) };
+            }
+        }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> [f32; 4] {

@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd};
+use super::{Apart, Job, Simd, record};
 
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(());
@@ -61,6 +61,29 @@ macro_rules! shared {
         fn iota(self) -> __m128i {
             // SAFETY: the token proves the instruction set.
             unsafe { _mm_setr_epi32(0, 1, 2, 3) }
+        }
+        #[inline(always)]
+        unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m128; 3] {
+            // SAFETY: the token, and the caller's contract.
+            unsafe {
+                let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
+                let (a, b, c, d) = (load(0), load(1), load(2), load(3));
+                let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+                let (ab_high, cd_high) = (_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+                [_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab), _mm_movelh_ps(ab_high, cd_high)]
+            }
+        }
+        #[inline(always)]
+        unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m128; 3]) {
+            // SAFETY: the token, and the caller's contract.
+            unsafe {
+                let (xy, xy_high) = (_mm_unpacklo_ps(x, y), _mm_unpackhi_ps(x, y));
+                let (zz, zz_high) = (_mm_unpacklo_ps(z, z), _mm_unpackhi_ps(z, z));
+                _mm_storeu_ps(p, _mm_movelh_ps(xy, zz));
+                _mm_storeu_ps(p.add(4), _mm_movehl_ps(zz, xy));
+                _mm_storeu_ps(p.add(8), _mm_movelh_ps(xy_high, zz_high));
+                _mm_storeu_ps(p.add(12), _mm_movehl_ps(zz_high, xy_high));
+            }
         }
         #[inline(always)]
         unsafe fn load_f(self, p: *const f32) -> __m128 {

@@ -113,6 +113,14 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let triangles: Vec<u32> = (0..3 * N as u32).collect();
             results.extend(s.load_triangles(triangles.as_ptr().add(3 * first)).map(lanes));
             results.extend(s.load_quads(far.as_ptr().add(4 * first)).map(floats));
+            let names: Vec<u32> = (0..3 * N as u32).map(|k| 7 * k % N as u32).collect();
+            let records = s.load_records(far.as_ptr(), names.as_ptr().add(3 * first));
+            results.extend(records.map(floats));
+            let mut stored = [0.0_f32; 4 * N];
+            s.store_records(stored.as_mut_ptr(), records);
+            for lane in stored[..4 * S::LANES].chunks(4) {
+                kept.extend(lane[..3].iter().map(|x| x.to_bits()));
+            }
             let mut packed = [0; N];
             let n = s.compress(packed.as_mut_ptr(), m, i);
             kept.extend_from_slice(&packed[..n]);

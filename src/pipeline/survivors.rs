@@ -1,0 +1,88 @@
+//! The triangles that are left after culling and clipping, in order, until there are enough of them for full vectors.
+
+use core::mem::MaybeUninit;
+
+use super::scratch::MAX_LANES;
+use crate::simd::Simd;
+
+/// Triangles that there is room for.
+pub(super) const ROOM: usize = 256;
+
+/// A corner: x and y in 1/256 pixel, and 1/w.
+pub(super) type Corner<S> = [<S as Simd>::F; 3];
+
+/// Corner by corner, clockwise in rows that run down: x, y, 1/w.
+#[repr(C, align(64))]
+pub(super) struct Survivors {
+    lanes: [[MaybeUninit<f32>; ROOM + MAX_LANES]; 9],
+    len: usize,
+}
+
+impl Survivors {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { lanes: [[MaybeUninit::uninit(); ROOM + MAX_LANES]; 9], len: 0 }
+    }
+
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Appends a triangle.
+    ///
+    /// # Panics
+    /// If there is no room.
+    #[inline]
+    pub fn push(&mut self, corners: &[[f32; 3]; 3]) {
+        assert!(self.len < ROOM);
+        for (lanes, &x) in self.lanes.iter_mut().zip(corners.as_flattened()) {
+            lanes[self.len].write(x);
+        }
+        self.len += 1;
+    }
+
+    /// Appends the triangles in `m`.
+    ///
+    /// # Safety
+    /// There is room for a vector.
+    #[inline(always)]
+    pub unsafe fn append<S: Simd>(&mut self, s: S, m: S::M, corners: &[Corner<S>; 3]) {
+        debug_assert!(self.len + S::LANES <= ROOM + MAX_LANES);
+        let mut n = 0;
+        for k in 0..9 {
+            // SAFETY: the caller's contract.
+            unsafe {
+                let to = self.lanes.get_unchecked_mut(k).as_mut_ptr().add(self.len);
+                n = s.compress(to.cast(), m, s.bits(corners[k / 3][k % 3]));
+            }
+        }
+        self.len += n;
+    }
+
+    /// The vector of triangles from `first` on. After the last triangle the last is repeated.
+    #[inline(always)]
+    pub fn vector<S: Simd>(&mut self, s: S, first: usize) -> [Corner<S>; 3] {
+        assert!(first < self.len && self.len <= ROOM);
+        if first + S::LANES > self.len {
+            for lanes in &mut self.lanes {
+                let last = lanes[self.len - 1];
+                lanes[self.len..first + S::LANES].fill(last);
+            }
+        }
+        // SAFETY: there is room for a vector after the last triangle, and what comes there was just written.
+        let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
+        [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
+    }
+
+    /// Forgets the first `n`, and leaves less than a vector.
+    #[inline(always)]
+    pub fn forget<S: Simd>(&mut self, s: S, n: usize) {
+        assert!(n <= self.len && self.len < n + S::LANES);
+        for lanes in &mut self.lanes {
+            // SAFETY: there is room for a vector after the last triangle.
+            unsafe { s.store_f(lanes.as_mut_ptr().cast(), s.load_f(lanes.as_ptr().add(n).cast())) };
+        }
+        self.len -= n;
+    }
+}
