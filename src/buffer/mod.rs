@@ -145,19 +145,19 @@ impl Buffer {
         Ok(TileRect { x0, y0, x1, y1 })
     }
 
-    /// The planes of tile (0, y); those of the next tile to the right are `BLOCK` words for every plane away.
+    /// The planes of the first block; those of each next are `BLOCK` words for every plane away.
     #[inline(always)]
-    pub fn row(&self, y: u32) -> *mut u32 {
-        let block = (y / 2 * self.tiles_w) as usize;
-        let words = block * plane_count(self.rule) * BLOCK + (y % 2) as usize * SUB_TILES;
-        debug_assert!(words < self.planes.len());
-        self.planes.as_ptr().wrapping_add(words)
+    pub fn planes(&self) -> *mut u32 {
+        self.planes.as_ptr()
     }
 
     /// The planes of tile (x, y), `BLOCK` words apart.
     #[inline(always)]
     pub fn tile(&self, x: u32, y: u32) -> *mut u32 {
-        self.row(y).wrapping_add(x as usize * plane_count(self.rule) * BLOCK)
+        let block = y as usize / 2 * self.tiles_w as usize + x as usize;
+        let words = block * plane_count(self.rule) * BLOCK + (y % 2) as usize * SUB_TILES;
+        debug_assert!(words < self.planes.len());
+        self.planes.as_ptr().wrapping_add(words)
     }
 
     /// The least depths of the tiles, row by row, for whole blocks, and room for a vector more.
@@ -185,6 +185,12 @@ impl Buffer {
             (true, true) => &self.border[2],
         };
         Some(border.as_ptr().wrapping_add((y % 2) as usize * SUB_TILES))
+    }
+
+    /// Does the screen's edge cut through sub-tiles anywhere?
+    #[inline(always)]
+    pub fn cuts(&self) -> bool {
+        self.cut_column != u32::MAX || self.cut_row != u32::MAX
     }
 
     /// The same, if the screen's edge cuts through sub-tiles there.

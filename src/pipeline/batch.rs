@@ -1,60 +1,92 @@
 //! A vector of triangles between setup and traversal.
 
+use core::mem::MaybeUninit;
+
 use super::scratch::MAX_LANES;
+
+/// A number a lane, not initialised: zeroing a batch at every call was a twentieth of a frame of small meshes.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Lanes<X: Copy>([MaybeUninit<X>; MAX_LANES]);
+
+impl<X: Copy> Lanes<X> {
+    /// # Safety
+    /// Setup stored this field for this lane.
+    #[inline(always)]
+    pub unsafe fn get(&self, lane: usize) -> X {
+        // SAFETY: the caller's contract.
+        unsafe { self.0[lane % MAX_LANES].assume_init() }
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, x: X) {
+        self.0[lane].write(x);
+    }
+
+    #[inline(always)]
+    pub fn as_ptr(&self) -> *const X {
+        self.0.as_ptr().cast()
+    }
+
+    #[inline(always)]
+    pub fn as_mut_ptr(&mut self) -> *mut X {
+        self.0.as_mut_ptr().cast()
+    }
+}
 
 /// A vector of triangles, set up: what the traversal reads, lane by lane.
 #[repr(C, align(64))]
 pub(super) struct Batch {
     /// Left edge: constant part of the event, and slope in pixels a row.
-    pub left: [f64; MAX_LANES],
-    pub left_slope: [f64; MAX_LANES],
-    pub right: [f64; MAX_LANES],
-    pub right_slope: [f64; MAX_LANES],
+    pub left: Lanes<f64>,
+    pub left_slope: Lanes<f64>,
+    pub right: Lanes<f64>,
+    pub right_slope: Lanes<f64>,
     /// The edge between the two lower corners bounds one side; on the other it is nowhere.
-    pub middle_left: [f64; MAX_LANES],
-    pub middle_right: [f64; MAX_LANES],
-    pub middle_slope: [f64; MAX_LANES],
+    pub middle_left: Lanes<f64>,
+    pub middle_right: Lanes<f64>,
+    pub middle_slope: Lanes<f64>,
     /// The edges once more, rounded: for bounds of what a row of tiles reaches.
     pub rounded: Rounded,
     /// Depth bound of the first sub-tile of the first tile, and its change from sub-tile to sub-tile.
-    pub z: [f32; MAX_LANES],
-    pub z_across: [f32; MAX_LANES],
-    pub z_down: [f32; MAX_LANES],
+    pub z: Lanes<f32>,
+    pub z_across: Lanes<f32>,
+    pub z_down: Lanes<f32>,
     /// The bound is clamped to this: the farthest vertex of a draw, the nearest of a query.
-    pub z_clamp: [f32; MAX_LANES],
+    pub z_clamp: Lanes<f32>,
     /// The nearest vertex.
-    pub nearest: [f32; MAX_LANES],
+    pub nearest: Lanes<f32>,
     /// Tiles of the bounding box, the last inside.
-    pub tile_x0: [u32; MAX_LANES],
-    pub tile_x1: [u32; MAX_LANES],
-    pub tile_y0: [u32; MAX_LANES],
-    pub tile_y1: [u32; MAX_LANES],
+    pub tile_x0: Lanes<u32>,
+    pub tile_x1: Lanes<u32>,
+    pub tile_y0: Lanes<u32>,
+    pub tile_y1: Lanes<u32>,
     /// Rows and columns of pixels of the bounding box, the last outside.
-    pub row0: [f32; MAX_LANES],
-    pub row1: [f32; MAX_LANES],
-    pub column0: [f32; MAX_LANES],
-    pub column1: [f32; MAX_LANES],
+    pub row0: Lanes<f32>,
+    pub row1: Lanes<f32>,
+    pub column0: Lanes<f32>,
+    pub column1: Lanes<f32>,
     /// x, y and 1/w of the three corners.
-    pub corners: [[f32; MAX_LANES]; 9],
+    pub corners: [Lanes<f32>; 9],
 }
 
 /// Edges in f32.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Rounded {
-    pub left: [f32; MAX_LANES],
-    pub left_slope: [f32; MAX_LANES],
-    pub right: [f32; MAX_LANES],
-    pub right_slope: [f32; MAX_LANES],
-    pub middle_left: [f32; MAX_LANES],
-    pub middle_right: [f32; MAX_LANES],
-    pub middle_slope: [f32; MAX_LANES],
+    pub left: Lanes<f32>,
+    pub left_slope: Lanes<f32>,
+    pub right: Lanes<f32>,
+    pub right_slope: Lanes<f32>,
+    pub middle_left: Lanes<f32>,
+    pub middle_right: Lanes<f32>,
+    pub middle_slope: Lanes<f32>,
 }
 
 impl Batch {
-    /// All zeros.
-    pub fn new() -> Self {
-        // SAFETY: it is arrays of numbers, and all bits zero are a number of each kind.
-        unsafe { core::mem::MaybeUninit::zeroed().assume_init() }
+    #[inline(always)]
+    pub fn uninit() -> Self {
+        // SAFETY: all of it is `MaybeUninit`.
+        unsafe { MaybeUninit::uninit().assume_init() }
     }
 }

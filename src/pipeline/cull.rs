@@ -88,8 +88,9 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let facing = Facing::new(mesh.options.winding, camera);
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);
-    let mut survivors = Survivors::new();
-    let mut batch = Batch::new();
+    let mut survivors = Survivors::uninit();
+    let survivors = Survivors::of(&mut survivors);
+    let mut batch = Batch::uninit();
     let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: facing.both, shared: false };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
@@ -133,19 +134,19 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
                             break;
                         }
                         Clipped::Polygon(polygon) => {
-                            in_view |= polygon.emit(L::PURPOSE, camera, facing, &mut survivors);
+                            in_view |= polygon.emit(L::PURPOSE, camera, facing, survivors);
                         }
                     }
                 }
             }
         }
         position += count;
-        if survivors.len() > FULL && !take_survivors(setup, &mut survivors, All::No, &mut batch, last, &mut tally) {
+        if survivors.len() > FULL && !take_survivors(setup, survivors, All::No, &mut batch, last, &mut tally) {
             return (CullingResult::Visible, tally);
         }
     }
     // What comes before what cannot be projected is compared first, so that the counts do not depend on the lanes.
-    if !take_survivors(setup, &mut survivors, All::Yes, &mut batch, last, &mut tally) || unprojectable {
+    if !take_survivors(setup, survivors, All::Yes, &mut batch, last, &mut tally) || unprojectable {
         return (CullingResult::Visible, tally);
     }
     let result = match (in_view && last.found(), L::PURPOSE) {

@@ -11,7 +11,8 @@ const NOWHERE: f64 = 1e30;
 
 /// Corner `k` of a lane.
 fn corner(batch: &Batch, lane: usize, k: usize) -> (i64, i64) {
-    (batch.corners[3 * k][lane] as i64, batch.corners[3 * k + 1][lane] as i64)
+    // SAFETY: setup stores the corners where a triangle is wide.
+    unsafe { (batch.corners[3 * k].get(lane) as i64, batch.corners[3 * k + 1].get(lane) as i64) }
 }
 
 /// The lanes alive, after the lanes in `wide` were given the exact sign of their area.
@@ -41,19 +42,17 @@ fn replace(batch: &mut Batch, wide: u32) {
         let [v0, v1, v2] = [0, 1, 2].map(|k| corner(batch, lane, k));
         let (right, right_slope) = edge(v0, v1).unwrap_or((NOWHERE, 0.0));
         let (left, left_slope) = edge(v0, v2).unwrap_or((-NOWHERE, 0.0));
-        (batch.right[lane], batch.right_slope[lane]) = (right, right_slope);
-        (batch.left[lane], batch.left_slope[lane]) = (left, left_slope);
         let (upper, lower) = if v1.1 <= v2.1 { (v1, v2) } else { (v2, v1) };
-        let (middle, slope) = edge(upper, lower).unwrap_or((0.0, 0.0));
-        batch.middle_slope[lane] = slope;
-        batch.middle_left[lane] = if v2.1 < v1.1 { middle } else { -NOWHERE };
-        batch.middle_right[lane] = if v2.1 > v1.1 { middle } else { NOWHERE };
-        let rounded = &mut batch.rounded;
-        (rounded.left[lane], rounded.left_slope[lane]) = (left as f32, left_slope as f32);
-        (rounded.right[lane], rounded.right_slope[lane]) = (right as f32, right_slope as f32);
-        rounded.middle_left[lane] = batch.middle_left[lane] as f32;
-        rounded.middle_right[lane] = batch.middle_right[lane] as f32;
-        rounded.middle_slope[lane] = slope as f32;
+        let (middle, middle_slope) = edge(upper, lower).unwrap_or((0.0, 0.0));
+        let middle_left = if v2.1 < v1.1 { middle } else { -NOWHERE };
+        let middle_right = if v2.1 > v1.1 { middle } else { NOWHERE };
+        macro_rules! set {
+            ($($field:ident)*) => {$(
+                batch.$field.set(lane, $field);
+                batch.rounded.$field.set(lane, $field as f32);
+            )*};
+        }
+        set!(left left_slope right right_slope middle_left middle_right middle_slope);
     }
 }
 

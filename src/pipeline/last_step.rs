@@ -124,8 +124,11 @@ impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
 /// Tiles of a triangle's box inside of a rectangle.
 #[inline(always)]
 fn tiles_in(batch: &Batch, lane: usize, clip: TileRect) -> u64 {
-    let wide = (batch.tile_x1[lane] + 1).min(clip.x1).saturating_sub(batch.tile_x0[lane].max(clip.x0));
-    let high = (batch.tile_y1[lane] + 1).min(clip.y1).saturating_sub(batch.tile_y0[lane].max(clip.y0));
+    // SAFETY: setup stores the tiles of every box.
+    let [x0, x1, y0, y1] =
+        unsafe { [&batch.tile_x0, &batch.tile_x1, &batch.tile_y0, &batch.tile_y1].map(|tile| tile.get(lane)) };
+    let wide = (x1 + 1).min(clip.x1).saturating_sub(x0.max(clip.x0));
+    let high = (y1 + 1).min(clip.y1).saturating_sub(y0.max(clip.y0));
     u64::from(wide) * u64::from(high)
 }
 
@@ -135,13 +138,15 @@ struct Update<'a, R> {
     merged: u64,
     /// What the next tiles add to both.
     counts: u32,
+    /// The screen's edge cuts sub-tiles somewhere.
+    cuts: bool,
     rule: PhantomData<R>,
 }
 
 impl<'a, R> Update<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, updated: 0, merged: 0, counts: 0, rule: PhantomData }
+        Self { buffer, updated: 0, merged: 0, counts: 0, cuts: buffer.cuts(), rule: PhantomData }
     }
 
     /// Tiles that were updated, and in which the reference depth rose.
@@ -164,7 +169,9 @@ impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
     unsafe fn tile(&mut self, t: T, at: TilePlace, mut covered: T::I, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let inserted = unsafe {
-            if let Some(outside) = self.buffer.cut(at.x, at.y) {
+            if self.cuts
+                && let Some(outside) = self.buffer.cut(at.x, at.y)
+            {
                 // With a pixel inside of the screen come all pixels outside.
                 let outside = t.load_i(outside);
                 covered = t.select_i(t.eq_i(covered, t.i(0)), t.i(0), t.or(covered, outside));
@@ -288,12 +295,16 @@ impl LastStep for Bins<'_, '_> {
         tally.rasterized += u64::from(alive.rasterized.count_ones());
         let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
         for lane in bits(alive.lanes) {
-            let triangle = core::array::from_fn(|k| batch.corners[k][lane]);
+            // SAFETY: setup stores the corners and the tiles of the box of every triangle that is binned.
+            let (triangle, [x0, x1, y0, y1]) = unsafe {
+                let tiles = [&batch.tile_x0, &batch.tile_x1, &batch.tile_y0, &batch.tile_y1];
+                (batch.corners.each_ref().map(|x| x.get(lane)), tiles.map(|tile| tile.get(lane)))
+            };
             // The last bin takes what division leaves over.
             let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
             let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
-            for y in row(batch.tile_y0[lane])..=row(batch.tile_y1[lane]) {
-                for x in column(batch.tile_x0[lane])..=column(batch.tile_x1[lane]) {
+            for y in row(y0)..=row(y1) {
+                for x in column(x0)..=column(x1) {
                     self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
                 }
             }

@@ -13,17 +13,18 @@ use crate::statistics::Tally;
 /// Draws the triangles of a list.
 #[inline(always)]
 pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'_>, last: &mut L) -> Tally {
-    let mut survivors = Survivors::new();
-    let mut batch = Batch::new();
+    let mut survivors = Survivors::uninit();
+    let survivors = Survivors::of(&mut survivors);
+    let mut batch = Batch::uninit();
     // The corners were put in order when the list was filled.
     let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, shared: true };
     let mut tally = Tally { processed: list.len() as u64, ..Tally::default() };
     let mut position = 0;
     while position < list.len() {
         let end = list.len().min(position + ROOM);
-        fetch(list, position..end, &mut survivors, &mut tally);
+        fetch(list, position..end, survivors, &mut tally);
         position = end;
-        if !take_survivors(setup, &mut survivors, All::Yes, &mut batch, last, &mut tally) {
+        if !take_survivors(setup, survivors, All::Yes, &mut batch, last, &mut tally) {
             break;
         }
     }

@@ -28,6 +28,8 @@ use crate::simd::Simd;
 const WIDE: f32 = (1 << 23) as f32;
 /// Far more than any screen, in pixels; what bounds nothing is there.
 const NOWHERE: f32 = 1e30;
+/// Beyond every screen, in pixels, and still an integer.
+const BEYOND: f32 = (1 << 20) as f32;
 /// 32 roundings.
 const MARGIN: f32 = 32.0 / (1 << 24) as f32;
 /// One unit in the last place and a half: from a vertex's rounded 1/w to a bound of the true one.
@@ -179,11 +181,20 @@ pub(super) fn set_up<S: Simd>(setup: Setup<'_, S>, [a, b, c]: [Corner<S>; 3], n:
             unsafe { s.store_f(batch.rounded.$field.as_mut_ptr(), s.d_to_f(value)) }
         };
     }
-    let [_, right, right_slope] = edge(s, query, [x0, y0], [dx_r, dy_r]);
-    store_edge!(right, s.add_d(right, nowhere(s, s.or_m(flat, s.eq(v0[1], v1[1])), NOWHERE)));
+    let [_, mut right, mut right_slope] = edge(s, query, [x0, y0], [dx_r, dy_r]);
+    let [mut left, _, mut left_slope] = edge(s, query, [x0, y0], [dx_l, dy_l]);
+    right = s.add_d(right, nowhere(s, s.eq(v0[1], v1[1]), NOWHERE));
+    left = s.add_d(left, nowhere(s, s.eq(v0[1], v2[1]), -NOWHERE));
+    if query {
+        // Upright edges right and left of everything.
+        let keep = s.to_d(s.select(flat, s.f(0.0), s.f(1.0)));
+        (right_slope, left_slope) = (s.mul_d(right_slope, keep), s.mul_d(left_slope, keep));
+        right = s.add_d(s.mul_d(right, keep), nowhere(s, flat, BEYOND));
+        left = s.add_d(s.mul_d(left, keep), nowhere(s, flat, -BEYOND));
+    }
+    store_edge!(right, right);
     store_edge!(right_slope, right_slope);
-    let [left, _, left_slope] = edge(s, query, [x0, y0], [dx_l, dy_l]);
-    store_edge!(left, s.add_d(left, nowhere(s, s.or_m(flat, s.eq(v0[1], v2[1])), -NOWHERE)));
+    store_edge!(left, left);
     store_edge!(left_slope, left_slope);
     let [middle_left, middle_right, middle_slope] = edge(s, query, [x1, y1], [dx_m, dy_m]);
     let all = s.le(s.f(0.0), s.f(0.0));

@@ -7,7 +7,7 @@
 
 use core::mem::MaybeUninit;
 
-use super::batch::Batch;
+use super::batch::{Batch, Lanes};
 use super::traverse::TileStep;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
@@ -48,6 +48,13 @@ pub(super) struct Lists {
     /// row and the lower.
     upper: Floats,
     lower: Floats,
+    /// Of the strip's first row of tiles: number of column 0's block, and number of column 0's tile.
+    block: Words,
+    index: Words,
+    /// Depth bound's change from sub-tile to sub-tile, its clamp, and sub-tiles left of the box's first tile.
+    across: Floats,
+    clamp: Floats,
+    sub_column: Words,
     /// Strips with an open tile.
     opened: [MaybeUninit<u32>; STRIPS + 1],
     /// Number of the strip and column of every open tile.
@@ -64,6 +71,15 @@ pub(super) struct Strips<'a> {
     listed: usize,
     next: usize,
     tile: u32,
+}
+
+/// What the tiles of a strip have in common; see [`Lists`].
+pub(super) struct Common {
+    pub block: u32,
+    pub index: u32,
+    pub across: f32,
+    pub clamp: f32,
+    pub sub_column: u32,
 }
 
 /// What is open at a time.
@@ -95,6 +111,21 @@ impl<'a> Strips<'a> {
         unsafe { self.lists.opened.get_unchecked(k).assume_init() as usize }
     }
 
+    /// What the tiles of a strip have in common.
+    #[inline(always)]
+    pub fn common(&self, strip: usize) -> Common {
+        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
+        unsafe {
+            Common {
+                block: self.lists.block.get_unchecked(strip).assume_init(),
+                index: self.lists.index.get_unchecked(strip).assume_init(),
+                across: self.lists.across.get_unchecked(strip).assume_init(),
+                clamp: self.lists.clamp.get_unchecked(strip).assume_init(),
+                sub_column: self.lists.sub_column.get_unchecked(strip).assume_init(),
+            }
+        }
+    }
+
     /// Number of the strip, and column, of the `k`th open tile.
     #[inline(always)]
     pub fn tile(&self, k: usize) -> (usize, u32) {
@@ -120,7 +151,7 @@ impl<'a> Strips<'a> {
             let mut k = 0;
             while k < self.listed {
                 // SAFETY: `k` is below the number listed, and the list is padded.
-                unsafe { self.bound(t, clip, batch, k) };
+                unsafe { self.bound(t, buffer, clip, batch, k) };
                 k += T::LANES;
             }
         }
@@ -135,9 +166,11 @@ impl<'a> Strips<'a> {
         let mut last = 0;
         while self.todo != 0 && listed < STRIPS {
             let lane = self.todo.trailing_zeros();
-            let k = lane as usize % MAX_LANES;
-            let first = (batch.tile_y0[k] / height::<T>()).max(begin);
-            let rows = (batch.tile_y1[k] / height::<T>() + 1).min(end).saturating_sub(first);
+            let k = lane as usize;
+            // SAFETY: setup stores the tiles of every box.
+            let (y0, y1) = unsafe { (batch.tile_y0.get(k), batch.tile_y1.get(k)) };
+            let first = (y0 / height::<T>()).max(begin);
+            let rows = (y1 / height::<T>() + 1).min(end).saturating_sub(first);
             last = lane << PLACE_SHIFT | (first + self.row);
             // SAFETY: there is room for a vector after `STRIPS`.
             unsafe {
@@ -162,13 +195,13 @@ impl<'a> Strips<'a> {
     /// # Safety
     /// `k` is below `STRIPS`, and as many places were written.
     #[inline(always)]
-    unsafe fn bound<T: Simd>(&mut self, t: T, clip: TileRect, batch: &Batch, k: usize) {
+    unsafe fn bound<T: Simd>(&mut self, t: T, buffer: &Buffer, clip: TileRect, batch: &Batch, k: usize) {
         // SAFETY: the caller's contract.
         let place = unsafe { t.load_i(self.lists.place.as_ptr().add(k).cast()) };
         let lane = t.sra::<PLACE_SHIFT>(place);
         let row = t.and(place, t.i(LOW as i32));
         // SAFETY: lanes of a batch, whose arrays hold any vector.
-        let of = |field: &[f32; MAX_LANES]| unsafe { t.lookup(field.as_ptr(), lane) };
+        let of = |field: &Lanes<f32>| unsafe { t.lookup(field.as_ptr(), lane) };
         let (column0, column1) = (of(&batch.column0), of(&batch.column1));
         // First and last row of pixels.
         let top = t.mul(t.to_f(row), t.f((height::<T>() * TILE_HEIGHT) as f32));
@@ -198,6 +231,20 @@ impl<'a> Strips<'a> {
         unsafe {
             t.store_i(self.lists.first.as_mut_ptr().add(k).cast(), t.or(number, first));
             t.store_i(self.lists.count.as_mut_ptr().add(k).cast(), count);
+            // Exact: there are at most 2^20 tiles.
+            let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
+            if height::<T>() == 1 {
+                let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
+                t.store_i(self.lists.block.as_mut_ptr().add(k).cast(), block);
+                t.store_i(self.lists.index.as_mut_ptr().add(k).cast(), in_rows);
+            } else {
+                t.store_i(self.lists.block.as_mut_ptr().add(k).cast(), in_rows);
+                t.store_i(self.lists.index.as_mut_ptr().add(k).cast(), t.shl::<1>(in_rows));
+            }
+            t.store_f(self.lists.across.as_mut_ptr().add(k).cast(), of(&batch.z_across));
+            t.store_f(self.lists.clamp.as_mut_ptr().add(k).cast(), of(&batch.z_clamp));
+            let tile_x0 = t.bits(t.lookup(batch.tile_x0.as_ptr().cast(), lane));
+            t.store_i(self.lists.sub_column.as_mut_ptr().add(k).cast(), t.shl::<2>(tile_x0));
             if height::<T>() == 1 {
                 t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), nearest);
             } else {
@@ -225,11 +272,8 @@ impl<'a> Strips<'a> {
             unsafe {
                 let first = lists.first.get_unchecked(k).assume_init() + self.tile;
                 let count = lists.count.get_unchecked(k).assume_init() - self.tile;
-                let (_, row) = {
-                    let word = lists.place.get_unchecked(k).assume_init();
-                    (word >> PLACE_SHIFT, word & LOW)
-                };
-                let least = buffer.least_of(first & LOW, row * height::<T>());
+                let index = lists.index.get_unchecked(k).assume_init();
+                let least = buffer.least().add((index + (first & LOW)) as usize);
                 let inside = t.first(count as usize);
                 let of = |p: *const f32| {
                     if whole { t.load_f(p) } else { some_of(t, p, count) }

@@ -20,8 +20,18 @@ pub(super) struct Survivors {
 
 impl Survivors {
     #[inline(always)]
-    pub fn new() -> Self {
-        Self { lanes: [[MaybeUninit::uninit(); ROOM + MAX_LANES]; 9], len: 0 }
+    pub fn uninit() -> MaybeUninit<Self> {
+        MaybeUninit::uninit()
+    }
+
+    /// None yet.
+    #[inline(always)]
+    pub fn of(memory: &mut MaybeUninit<Self>) -> &mut Self {
+        // SAFETY: the length is written here, all else is arrays of `MaybeUninit`.
+        unsafe {
+            (&raw mut (*memory.as_mut_ptr()).len).write(0);
+            memory.assume_init_mut()
+        }
     }
 
     #[inline(always)]

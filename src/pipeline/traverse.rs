@@ -10,29 +10,20 @@
 
 use core::mem::MaybeUninit;
 
-use super::batch::Batch;
+use super::batch::{Batch, Lanes};
 use super::setup::Alive;
 use super::strips::{self, Strips, height};
-use crate::buffer::{BLOCK, Buffer, TILE_HEIGHT, TILE_WIDTH, TilePlace, TileRect};
+use crate::buffer::{BLOCK, Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TilePlace, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 
-/// What the tiles of a strip have in common.
+/// The rows of a strip.
 #[repr(C, align(64))]
-struct Shared {
+struct Rows {
     /// For each row of pixels the first pixel inside and the first beyond, from the screen's left side.
     left: [u32; MAX_LANES],
     right: [u32; MAX_LANES],
-    /// Depth bound of each sub-tile of the box's first tile, and its change from sub-tile to sub-tile.
+    /// Depth bound of each sub-tile of the box's first tile.
     z: [f32; MAX_LANES],
-    across: f32,
-    clamp: f32,
-    /// Sub-tiles left of the box's first tile; the strip's first row of tiles; the triangle's lane.
-    sub_column: u32,
-    y: u32,
-    lane: u32,
-    /// Planes and least depth of the first tile in that row.
-    planes: *mut u32,
-    least: *mut f32,
 }
 
 /// What happens in a tile.
@@ -60,7 +51,7 @@ pub(super) trait TileStep<T: Simd> {
 /// Room for the lists; not initialised.
 pub(super) struct Lists {
     strips: MaybeUninit<strips::Lists>,
-    shared: [MaybeUninit<Shared>; strips::STRIPS],
+    rows: [MaybeUninit<Rows>; strips::STRIPS],
 }
 
 impl Lists {
@@ -85,36 +76,38 @@ pub(super) struct Way<'a> {
 pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S) -> Option<u32> {
     let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
-    let Lists { strips, shared } = unsafe { lists.assume_init_mut() };
+    let Lists { strips, rows } = unsafe { lists.assume_init_mut() };
     let mut strips = Strips::new(strips, alive.lanes);
     while let Some(open) = strips.next::<T, S>(t, buffer, clip, batch) {
         for k in 0..open.strips {
             let strip = strips.opened(k);
-            let (lane, row) = strips.place(strip);
-            // SAFETY: strips are fewer than there is room for.
-            unsafe { share(t, buffer, batch, lane, row * height::<T>(), shared.get_unchecked_mut(strip).as_mut_ptr()) };
+            let (lane, y) = strips.place(strip);
+            // SAFETY: strips are fewer than there is room for; setup stored what it found of the lane.
+            unsafe { write_rows(t, batch, lane, y * height::<T>(), rows.get_unchecked_mut(strip).as_mut_ptr()) };
         }
         for k in 0..open.tiles {
             let (strip, x) = strips.tile(k);
+            let common = strips.common(strip);
             // SAFETY: strips with open tiles were written above; vectors of as many words as there are lanes.
-            let (strip, left, right, z) = unsafe {
-                let strip = shared.get_unchecked(strip).assume_init_ref();
-                let (left, right) = (t.load_i(strip.left.as_ptr()), t.load_i(strip.right.as_ptr()));
-                (strip, left, right, t.load_f(strip.z.as_ptr()))
+            let (left, right, z) = unsafe {
+                let rows = rows.get_unchecked(strip).assume_init_ref();
+                (t.load_i(rows.left.as_ptr()), t.load_i(rows.right.as_ptr()), t.load_f(rows.z.as_ptr()))
             };
             let covered = coverage(t, left, right, x);
-            let column = t.or(t.i((4 * x).wrapping_sub(strip.sub_column) as i32), t.and(t.iota(), t.i(3)));
-            let plane = t.add(z, t.mul(t.f(strip.across), t.to_f(column)));
-            let clamp = t.f(strip.clamp);
+            let column = t.or(t.i((4 * x).wrapping_sub(common.sub_column) as i32), t.and(t.iota(), t.i(3)));
+            let plane = t.add(z, t.mul(t.f(common.across), t.to_f(column)));
+            let clamp = t.f(common.clamp);
             let depth = if S::DRAWS { t.max(plane, clamp) } else { t.min(plane, clamp) };
+            let (lane, y) = strips.place(strip);
             // SAFETY: a tile of the triangle's box is a tile of the buffer.
             let more = unsafe {
-                let planes = strip.planes.add(x as usize * S::PLANES * BLOCK);
-                let at = TilePlace { x, y: strip.y, planes, least: strip.least.add(x as usize) };
-                step.tile(t, at, covered, depth)
+                let half = if height::<T>() == 1 { y as usize % 2 * SUB_TILES } else { 0 };
+                let planes = buffer.planes().add((common.block + x) as usize * S::PLANES * BLOCK + half);
+                let least = buffer.least().add((common.index + x) as usize);
+                step.tile(t, TilePlace { x, y: y * height::<T>(), planes, least }, covered, depth)
             };
             if !more {
-                return Some(strip.lane);
+                return Some(lane as u32);
             }
         }
         step.tiles_done();
@@ -133,38 +126,35 @@ fn coverage<T: Simd>(t: T, left: T::I, right: T::I, x: u32) -> T::I {
 /// Writes the events and depths of the triangle in `lane`, from row `y` of tiles on.
 ///
 /// # Safety
-/// `to` can be written.
+/// Setup stored all of the lane; `to` can be written.
 #[inline(always)]
-unsafe fn share<T: Simd>(t: T, buffer: &Buffer, batch: &Batch, lane: usize, y: u32, to: *mut Shared) {
-    let lane = lane % MAX_LANES;
-    let rows = t.add_i(t.i((y * TILE_HEIGHT) as i32), t.iota());
-    let rows_f = t.to_f(rows);
-    let row = t.to_d(rows_f);
-    let left = t.add_d(t.d(batch.left[lane]), t.mul_d(t.d(batch.left_slope[lane]), row));
-    let right = t.add_d(t.d(batch.right[lane]), t.mul_d(t.d(batch.right_slope[lane]), row));
-    let middle = t.mul_d(t.d(batch.middle_slope[lane]), row);
-    let left = t.max_d(left, t.add_d(t.d(batch.middle_left[lane]), middle));
-    let right = t.min_d(right, t.add_d(t.d(batch.middle_right[lane]), middle));
-    // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal; of edges
-    // that bound nothing they are nowhere. In rows outside of the box they may be anything.
-    let (column0, column1) = (f64::from(batch.column0[lane]), f64::from(batch.column1[lane]));
-    let left = t.min_d(t.max_d(left, t.d(column0)), t.d(column1));
-    let right = t.max_d(t.min_d(right, t.d(column1)), t.d(column0));
-    let inside = t.and_m(t.le(t.f(batch.row0[lane]), rows_f), t.lt(rows_f, t.f(batch.row1[lane])));
-    let right = t.select_i(inside, t.d_to_i(right), t.i(0));
-    let sub_row = t.add_i(t.i(2 * (y as i32 - batch.tile_y0[lane] as i32)), t.sra::<2>(t.iota()));
-    let z = t.add(t.f(batch.z[lane]), t.mul(t.f(batch.z_down[lane]), t.to_f(sub_row)));
+unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, y: u32, to: *mut Rows) {
+    // SAFETY: the caller's contract.
+    let of_d = |field: &Lanes<f64>| t.d(unsafe { field.get(lane) });
+    // SAFETY: the caller's contract.
+    let of = |field: &Lanes<f32>| t.f(unsafe { field.get(lane) });
+    let rows = t.to_f(t.add_i(t.i((y * TILE_HEIGHT) as i32), t.iota()));
+    let row = t.to_d(rows);
+    let left = t.add_d(of_d(&batch.left), t.mul_d(of_d(&batch.left_slope), row));
+    let right = t.add_d(of_d(&batch.right), t.mul_d(of_d(&batch.right_slope), row));
+    let middle = t.mul_d(of_d(&batch.middle_slope), row);
+    let left = t.d_to_i(t.max_d(left, t.add_d(of_d(&batch.middle_left), middle)));
+    let right = t.d_to_i(t.min_d(right, t.add_d(of_d(&batch.middle_right), middle)));
+    // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal. In rows outside
+    // of the box they may be anything, and what does not fit in an integer, too.
+    let (column0, column1) = (t.trunc(of(&batch.column0)), t.trunc(of(&batch.column1)));
+    let left = t.min_i(t.max_i(left, column0), column1);
+    let right = t.max_i(t.min_i(right, column1), column0);
+    let inside = t.and_m(t.le(of(&batch.row0), rows), t.lt(rows, of(&batch.row1)));
+    let right = t.select_i(inside, right, t.i(0));
+    // SAFETY: the caller's contract.
+    let sub_row = 2 * (y as i32 - unsafe { batch.tile_y0.get(lane) } as i32);
+    let sub_row = t.to_f(t.add_i(t.i(sub_row), t.sra::<2>(t.iota())));
+    let z = t.add(of(&batch.z), t.mul(of(&batch.z_down), sub_row));
     // SAFETY: the caller's contract; the arrays hold a vector.
     unsafe {
-        t.store_i((&raw mut (*to).left).cast(), t.d_to_i(left));
+        t.store_i((&raw mut (*to).left).cast(), left);
         t.store_i((&raw mut (*to).right).cast(), right);
         t.store_f((&raw mut (*to).z).cast(), z);
-        (*to).across = batch.z_across[lane];
-        (*to).clamp = batch.z_clamp[lane];
-        (*to).sub_column = 4 * batch.tile_x0[lane];
-        (*to).planes = buffer.row(y);
-        (*to).least = buffer.least_of(0, y);
-        (*to).y = y;
-        (*to).lane = lane as u32;
     }
 }
