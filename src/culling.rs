@@ -213,7 +213,7 @@ impl MaskedOcclusionCulling {
         let mesh = Mesh { vertices, triangles, options };
         // SAFETY: the caller's contract for the vertices; `&mut self` keeps every other user of the buffer away.
         let (result, tally) = unsafe { pipeline::draw(self.implementation, buffer, &camera, &mesh) };
-        self.counters.add_draw(&tally);
+        self.counters.add_draw_alone(&tally);
         Ok(result)
     }
 

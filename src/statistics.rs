@@ -27,6 +27,14 @@ impl Counters {
         add(&self.occluders, counts);
     }
 
+    /// The same without an atomic addition, of which each costs as much as a tile's depth test.
+    pub fn add_draw_alone(&mut self, t: &Tally) {
+        let counts = [t.processed, t.rasterized, t.traversed, t.updated, t.merged, t.dropped];
+        for (counter, n) in self.occluders.iter_mut().zip(counts) {
+            *counter.get_mut() += n as i64;
+        }
+    }
+
     pub fn add_query(&self, rectangles: u64, t: &Tally) {
         let counts = [rectangles, t.processed, t.rasterized, t.traversed];
         add(&self.occludees, counts);

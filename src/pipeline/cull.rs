@@ -248,25 +248,31 @@ impl<S: Simd> Group<S> {
         facing: Facing,
         scratch: &Scratch,
     ) -> Self {
-        let mut padded = [0; 3 * MAX_LANES];
+        let mut padded = core::mem::MaybeUninit::<[u32; 3 * MAX_LANES]>::uninit();
         let (vertices, indices) = match numbering {
             Numbering::From(base) => {
                 let group = &indices[3 * position..3 * (position + count)];
                 let indices = if count == S::LANES {
                     group.as_ptr()
                 } else {
-                    padded.fill(base);
-                    padded[..group.len()].copy_from_slice(group);
-                    padded.as_ptr()
+                    for k in 0..3 {
+                        let at = k * S::LANES;
+                        let n = group.len().saturating_sub(at);
+                        // SAFETY: no more is read than is there; the array holds three vectors.
+                        unsafe {
+                            let some = s.load_some(group.as_ptr().wrapping_add(at), n);
+                            let index = s.select_i(s.first(n), some, s.i(base as i32));
+                            s.store_i(padded.as_mut_ptr().cast::<u32>().add(at), index);
+                        }
+                    }
+                    padded.as_ptr().cast()
                 };
                 (scratch.from_base(base), indices)
             }
             Numbering::InOrder { first } => {
                 // Lanes beyond the last are of no account, but have to be in the scratch.
-                for (k, index) in padded.iter_mut().enumerate() {
-                    *index = (k % (3 * count)) as u32 + 3 * (position - first) as u32;
-                }
-                (scratch.from_base(0), padded.as_ptr())
+                let index = |k: usize| (k % (3 * count)) as u32 + 3 * (position - first) as u32;
+                (scratch.from_base(0), padded.write(core::array::from_fn(index)).as_ptr())
             }
         };
         let (second, third) = if facing.swap { (2, 1) } else { (1, 2) };

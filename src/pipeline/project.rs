@@ -210,6 +210,41 @@ impl<S: Simd> Reader<S> {
         self.to_clip(v)
     }
 
+    /// `count` packed vertices from `first` on, fewer than there are lanes, in clip space; those after them are zeros.
+    ///
+    /// # Safety
+    /// They can be read.
+    #[inline(always)]
+    unsafe fn load_first(&self, first: u32, count: usize) -> [S::F; 3] {
+        const MAX_LANES: usize = super::scratch::MAX_LANES;
+        let (s, p) = (self.s, self.at(first).cast::<u32>());
+        let mut words = [0; 4 * MAX_LANES];
+        // What is written here is read as vectors again, so that neither has to wait for single words.
+        let mut copy = |n: usize, vectors: usize| {
+            for k in 0..vectors {
+                let at = k * S::LANES;
+                // SAFETY: the caller's contract; the array holds four vectors.
+                unsafe { s.store_i(words.as_mut_ptr().add(at), s.load_some(p.wrapping_add(at), n.saturating_sub(at))) };
+            }
+        };
+        // SAFETY: the array holds four vectors.
+        let v = unsafe {
+            match self.packing {
+                Packing::Four { third } => {
+                    // Of the last vertex no more than its third float.
+                    copy(4 * count - 3 + third, 4);
+                    let v = s.load_quads(words.as_ptr().cast());
+                    [v[0], v[1], if third == 2 { v[2] } else { v[3] }]
+                }
+                _ => {
+                    copy(3 * count, 3);
+                    s.load_triangles(words.as_ptr()).map(|v| s.float_of_bits(v))
+                }
+            }
+        };
+        self.to_clip(v)
+    }
+
     /// `N` vertices as they lie in memory, one after the other.
     ///
     /// # Safety
@@ -244,6 +279,12 @@ impl<S: Simd> Reader<S> {
     #[inline(always)]
     pub unsafe fn dense(&self, camera: &Camera, first: u32, count: usize, scratch: &mut Scratch) {
         let s = self.s;
+        if count < S::LANES && self.packing != Packing::Other {
+            // SAFETY: the caller's contract.
+            let [x, y, z] = unsafe { project(s, camera, self.load_first(first, count)) };
+            // SAFETY: the scratch has room for a vector.
+            return unsafe { s.store_records(scratch.vertex(0), [x, y, z]) };
+        }
         if count < S::LANES {
             let last = count as u32 - 1;
             let indices: [u32; super::scratch::MAX_LANES] =

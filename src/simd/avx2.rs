@@ -84,6 +84,11 @@ impl Simd for Avx2 {
         unsafe { _mm256_loadu_si256(p.cast()) }
     }
     #[inline(always)]
+    unsafe fn load_some(self, p: *const u32, n: usize) -> __m256i {
+        // SAFETY: the token, and the caller's contract: masked lanes are not read.
+        unsafe { _mm256_maskload_epi32(p.cast(), _mm256_cmpgt_epi32(_mm256_set1_epi32(n.min(8) as i32), self.iota())) }
+    }
+    #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: __m256) {
         // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_storeu_ps(p, x) }

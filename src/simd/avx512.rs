@@ -84,6 +84,11 @@ impl Simd for Avx512 {
         unsafe { _mm512_loadu_epi32(p.cast()) }
     }
     #[inline(always)]
+    unsafe fn load_some(self, p: *const u32, n: usize) -> __m512i {
+        // SAFETY: the token, and the caller's contract: masked lanes are not read.
+        unsafe { _mm512_maskz_loadu_epi32(_bzhi_u32(0xffff, n.min(16) as u32) as __mmask16, p.cast()) }
+    }
+    #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: __m512) {
         // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_storeu_ps(p, x) }

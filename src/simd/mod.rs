@@ -55,6 +55,10 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// As [`Self::load_f`].
     unsafe fn load_i(self, p: *const u32) -> Self::I;
+    /// The first `n` values from `p` on, zeros after them; all `LANES` for a larger `n`.
+    /// # Safety
+    /// Those can be read; any alignment.
+    unsafe fn load_some(self, p: *const u32, n: usize) -> Self::I;
     /// # Safety
     /// `p` can be written for `LANES` values; any alignment.
     unsafe fn store_f(self, p: *mut f32, x: Self::F);

@@ -73,6 +73,16 @@ impl Simd for Neon {
         unsafe { vld1q_s32(p.cast()) }
     }
     #[inline(always)]
+    unsafe fn load_some(self, p: *const u32, n: usize) -> int32x4_t {
+        let mut lanes = [0_u32; 4];
+        for (lane, x) in lanes.iter_mut().enumerate().take(n) {
+            // SAFETY: the caller's contract.
+            *x = unsafe { p.add(lane).read_unaligned() };
+        }
+        // SAFETY: the token; four words.
+        unsafe { vld1q_s32(lanes.as_ptr().cast()) }
+    }
+    #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: float32x4_t) {
         // SAFETY: the token, and the caller's contract.
         unsafe { vst1q_f32(p, x) }

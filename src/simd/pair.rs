@@ -83,6 +83,11 @@ impl<S: Simd> Simd for Pair<S> {
         unsafe { [self.0.load_i(p), self.0.load_i(p.add(S::LANES))] }
     }
     #[inline(always)]
+    unsafe fn load_some(self, p: *const u32, n: usize) -> Self::I {
+        // SAFETY: the caller's contract, half by half.
+        unsafe { [self.0.load_some(p, n), self.0.load_some(p.wrapping_add(S::LANES), n.saturating_sub(S::LANES))] }
+    }
+    #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: Self::F) {
         // SAFETY: the caller's contract, half by half.
         unsafe {

@@ -127,6 +127,15 @@ impl Simd for Scalar4 {
         unsafe { p.cast::<[i32; 4]>().read_unaligned() }
     }
     #[inline(always)]
+    unsafe fn load_some(self, p: *const u32, n: usize) -> [i32; 4] {
+        let mut lanes = [0; 4];
+        for (lane, x) in lanes.iter_mut().enumerate().take(n) {
+            // SAFETY: the caller's contract.
+            *x = unsafe { p.add(lane).read_unaligned() as i32 };
+        }
+        lanes
+    }
+    #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: [f32; 4]) {
         // SAFETY: the caller's contract.
         unsafe { p.cast::<[f32; 4]>().write_unaligned(x) }

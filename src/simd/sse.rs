@@ -96,6 +96,20 @@ macro_rules! shared {
             unsafe { _mm_loadu_si128(p.cast()) }
         }
         #[inline(always)]
+        unsafe fn load_some(self, p: *const u32, n: usize) -> __m128i {
+            // SAFETY: the token, and the caller's contract.
+            unsafe {
+                let one = |k: usize| _mm_cvtsi32_si128(p.add(k).cast::<i32>().read_unaligned());
+                match n {
+                    0 => _mm_setzero_si128(),
+                    1 => one(0),
+                    2 => _mm_loadl_epi64(p.cast()),
+                    3 => _mm_unpacklo_epi64(_mm_loadl_epi64(p.cast()), one(2)),
+                    _ => _mm_loadu_si128(p.cast()),
+                }
+            }
+        }
+        #[inline(always)]
         unsafe fn store_f(self, p: *mut f32, x: __m128) {
             // SAFETY: the token, and the caller's contract.
             unsafe { _mm_storeu_ps(p, x) }

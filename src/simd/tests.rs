@@ -34,6 +34,7 @@ impl Job for AllOperations {
 fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     let mut out: Vec<Vec<u32>> = Vec::new();
     let mut kept = Vec::new();
+    let count_of_lanes = input.index[0] as usize;
     for first in (0..N).step_by(S::LANES) {
         let mut results: Vec<Vec<u32>> = Vec::new();
         // SAFETY: every array has N elements, and `first + LANES <= N`.
@@ -121,6 +122,8 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             for lane in stored[..4 * S::LANES].chunks(4) {
                 kept.extend(lane[..3].iter().map(|x| x.to_bits()));
             }
+            let n = count_of_lanes.saturating_sub(first);
+            results.push(lanes(s.load_some(input.i.as_ptr().add(first), n)));
             let mut packed = [0; N];
             let n = s.compress(packed.as_mut_ptr(), m, i);
             kept.extend_from_slice(&packed[..n]);
