@@ -1,4 +1,5 @@
 // A program as engines write it: every method of the class, every default argument, allocators of its own.
+#define ENABLE_STATS 1
 #include "check.h"
 
 #include "MaskedOcclusionCulling.h"

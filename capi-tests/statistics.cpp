@@ -1,4 +1,5 @@
 // What the statistics count, to the number: triangles drawn, binned, drawn from lists and tested.
+#define ENABLE_STATS 1
 #include "check.h"
 
 #include "MaskedOcclusionCulling.h"

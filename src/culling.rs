@@ -27,6 +27,8 @@ pub struct Settings {
     pub y_axis: YAxis,
     /// Where the buffer's memory comes from.
     pub allocator: Allocator,
+    /// Whether the statistics count tiles: a twentieth of the time of a draw. Triangles are counted always.
+    pub count_tiles: bool,
 }
 
 impl Default for Settings {
@@ -36,6 +38,7 @@ impl Default for Settings {
             update_rule: UpdateRule::default(),
             y_axis: YAxis::default(),
             allocator: Allocator::SYSTEM,
+            count_tiles: false,
         }
     }
 }
@@ -67,6 +70,7 @@ pub struct MaskedOcclusionCulling {
     update_rule: UpdateRule,
     y_axis: YAxis,
     allocator: Allocator,
+    count_tiles: bool,
     near: f32,
     buffer: Option<Buffer>,
     counters: Counters,
@@ -86,6 +90,7 @@ impl MaskedOcclusionCulling {
             update_rule: settings.update_rule,
             y_axis: settings.y_axis,
             allocator: settings.allocator,
+            count_tiles: settings.count_tiles,
             near: 0.0,
             buffer: None,
             counters: Counters::default(),
@@ -121,7 +126,7 @@ impl MaskedOcclusionCulling {
             return Err(Error::InvalidSize);
         }
         if self.resolution() != Some((width, height)) {
-            self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator)?);
+            self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator, self.count_tiles)?);
         }
         self.clear_buffer()
     }

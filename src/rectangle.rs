@@ -95,7 +95,7 @@ impl<R: Rule> Job for Walk<'_, R> {
                 while open != 0 {
                     let lane = open.trailing_zeros();
                     open &= open - 1;
-                    tally.traversed += 1;
+                    tally.traversed += u64::from(buffer.count_tiles());
                     // SAFETY: one of the tiles that the rectangle touches.
                     if unsafe { self.sees_tile(s, x + lane, y) } {
                         return (CullingResult::Visible, tally);

@@ -53,7 +53,8 @@ fn hashes(scene: &Scene, implementation: Implementation, rule: UpdateRule) -> [u
     let mut depth = vec![0.0; w * h];
     for y_axis in [YAxis::Down, YAxis::Up] {
         for winding in [BackfaceWinding::Clockwise, BackfaceWinding::None] {
-            let settings = Settings { implementation, update_rule: rule, y_axis, allocator: Allocator::SYSTEM };
+            let settings =
+                Settings { implementation, update_rule: rule, y_axis, allocator: Allocator::SYSTEM, count_tiles: true };
             let mut moc = MaskedOcclusionCulling::new(settings);
             moc.set_resolution(w as u32, h as u32).unwrap();
             moc.set_near_clip_plane(scene.near).unwrap();
@@ -148,7 +149,8 @@ fn every_instruction_set_agrees_after_every_object() {
             let mut objects: Vec<_> = Implementation::available()
                 .iter()
                 .map(|&implementation| {
-                    let settings = Settings { implementation, update_rule: rule, ..Settings::default() };
+                    let settings =
+                        Settings { implementation, update_rule: rule, count_tiles: true, ..Settings::default() };
                     let mut moc = MaskedOcclusionCulling::new(settings);
                     moc.set_resolution(w, h).unwrap();
                     moc.set_near_clip_plane(scene.near).unwrap();

@@ -60,6 +60,7 @@ pub(crate) struct Buffer {
     tiles_w: u32,
     tiles_h: u32,
     rule: UpdateRule,
+    count_tiles: bool,
     planes: AlignedWords,
     least: AlignedWords,
     /// For the blocks that the screen's edge cuts: which pixels of each sub-tile are outside.
@@ -71,7 +72,13 @@ pub(crate) struct Buffer {
 }
 
 impl Buffer {
-    pub fn new(width: u32, height: u32, rule: UpdateRule, allocator: Allocator) -> Result<Self, Error> {
+    pub fn new(
+        width: u32,
+        height: u32,
+        rule: UpdateRule,
+        allocator: Allocator,
+        count_tiles: bool,
+    ) -> Result<Self, Error> {
         let (tiles_w, tiles_h) = (width.div_ceil(TILE_WIDTH), height.div_ceil(TILE_HEIGHT));
         // Whole blocks.
         let tiles = tiles_w as usize * tiles_h.next_multiple_of(2) as usize;
@@ -83,6 +90,7 @@ impl Buffer {
             tiles_w,
             tiles_h,
             rule,
+            count_tiles,
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
             // The widest vector may be loaded from the last of them.
             least: AlignedWords::new(tiles + MAX_LANES, allocator)?,
@@ -108,6 +116,11 @@ impl Buffer {
 
     pub fn rule(&self) -> UpdateRule {
         self.rule
+    }
+
+    /// Do the statistics of draws and queries count tiles?
+    pub fn count_tiles(&self) -> bool {
+        self.count_tiles
     }
 
     /// Every tile of the buffer.

@@ -51,16 +51,16 @@ impl Rule for ThreeLayer {
         // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the
         // reference. Nothing here waits for which lanes are alive: triangles that follow each other often meet in the same tile,
         // and the next one waits for what this one stores.
-        let t = s.select(s.eq_i(c, s.i(0)), s.f(-1.0), depth);
+        let t = s.select(s.eq_i(c, s.i(0)), s.f(0.0), depth);
         let nearer_than_near = s.lt(z_near, t);
         let nearer_than_far = s.lt(z_far, t);
         // Three candidate layers and their pixels, nearest first.
         let mask_a = s.select_i(nearer_than_near, c, near);
         let mask_b = s.select_i(nearer_than_far, s.or(near, c), far);
         let mask_c = s.or(far, c);
-        let z_a = s.max(z_near, t);
-        let z_b = s.max(z_far, s.min(z_near, t));
-        let z_c = s.min(z_far, t);
+        let z_a = s.max_positive(z_near, t);
+        let z_b = s.max_positive(z_far, s.min_positive(z_near, t));
+        let z_c = s.min_positive(z_far, t);
         // What is lost by dropping each: the depth down to the next, nothing where the next has the same pixels.
         let loss_a = s.sub(z_a, z_b);
         let loss_b = s.select(s.eq_i(mask_b, mask_a), s.f(0.0), s.sub(z_b, z_c));
@@ -72,7 +72,7 @@ impl Rule for ThreeLayer {
         // The nearest full layer: where a nearer one is full, those behind it are.
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
-        let risen = s.select(full_c, s.max(z0, nearest_full), z0);
+        let risen = s.select(full_c, s.max_positive(z0, nearest_full), z0);
         *planes = Planes {
             z0: risen,
             z_near: s.select(drop_a, z_b, z_a),

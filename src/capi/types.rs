@@ -110,6 +110,8 @@ pub struct MOC_Settings {
     pub y_axis: i32,
     /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
     pub precise_coverage: i32,
+    /// 0 or 1. 1: the statistics count tiles, too, which takes a twentieth of the time of a draw. Default 0.
+    pub count_tiles: i32,
     /// Where all memory of the object comes from. Null, together with `free`: the system. Default null.
     pub alloc: MOC_AlignedAlloc,
     /// Takes back what `alloc` gave. Null exactly when `alloc` is.

@@ -64,8 +64,8 @@ pub(super) struct Batch {
     /// Rows and columns of pixels of the bounding box, the last outside.
     pub row0: Lanes<f32>,
     pub row1: Lanes<f32>,
-    pub column0: Lanes<f32>,
-    pub column1: Lanes<f32>,
+    pub column0: Lanes<u32>,
+    pub column1: Lanes<u32>,
     /// x, y and 1/w of the three corners.
     pub corners: [Lanes<f32>; 9],
 }

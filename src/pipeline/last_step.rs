@@ -89,16 +89,29 @@ impl<T: Simd> LastStep for Draw<'_, T> {
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         tally.rasterized += u64::from(alive.rasterized.count_ones());
-        for lane in bits(alive.rasterized) {
-            tally.traversed += tiles_in(batch, lane, self.clip);
+        if alive.lanes == 0 && !self.buffer.count_tiles() {
+            return true;
         }
         let &mut Self { t, buffer, clip, ref mut lists } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
+        if !buffer.count_tiles() {
+            match buffer.rule() {
+                UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer, false>::new(buffer) }).0,
+                UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, false>::new(buffer) }).0,
+                UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, false>::new(buffer) }).0,
+            };
+            return true;
+        }
+        for lane in bits(alive.rasterized) {
+            tally.traversed += tiles_in(batch, lane, clip);
+        }
         let (updated, merged) = match buffer.rule() {
-            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer>::new(buffer) }).1.counts(),
-            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick>::new(buffer) }).1.counts(),
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate>::new(buffer) }).1.counts(),
+            UpdateRule::ThreeLayer => {
+                t.apart(Traverse { way, step: Update::<ThreeLayer, true>::new(buffer) }).1.counts()
+            }
+            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, true>::new(buffer) }).1.counts(),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, true>::new(buffer) }).1.counts(),
         };
         tally.updated += updated;
         tally.merged += merged;
@@ -132,7 +145,8 @@ fn tiles_in(batch: &Batch, lane: usize, clip: TileRect) -> u64 {
     u64::from(wide) * u64::from(high)
 }
 
-struct Update<'a, R> {
+/// Updates tiles, and counts them if `COUNT`.
+struct Update<'a, R, const COUNT: bool> {
     buffer: &'a Buffer,
     updated: u64,
     merged: u64,
@@ -143,7 +157,7 @@ struct Update<'a, R> {
     rule: PhantomData<R>,
 }
 
-impl<'a, R> Update<'a, R> {
+impl<'a, R, const COUNT: bool> Update<'a, R, COUNT> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
         Self { buffer, updated: 0, merged: 0, counts: 0, cuts: buffer.cuts(), rule: PhantomData }
@@ -156,7 +170,7 @@ impl<'a, R> Update<'a, R> {
     }
 }
 
-impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
+impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     const PLANES: usize = R::PLANES;
     const DRAWS: bool = true;
 
@@ -183,14 +197,19 @@ impl<T: Simd, R: Rule> TileStep<T> for Update<'_, R> {
             inserted
         };
         // Four counts in the bytes of a word: of two tiles with a lane in which something was updated, merged.
-        let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
-        self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
+        if COUNT {
+            let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
+            self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
+        }
         true
     }
 
     #[inline(always)]
     fn tiles_done(&mut self) {
         const { assert!(MAX_TILES < 256) }
+        if !COUNT {
+            return;
+        }
         let of = |byte: u32| u64::from(self.counts >> (8 * byte) & 0xff);
         (self.updated, self.merged) = (self.updated + of(0) + of(1), self.merged + of(2) + of(3));
         self.counts = 0;
@@ -231,8 +250,10 @@ impl<T: Simd> LastStep for Query<'_, T> {
         // Triangles after the first that may be seen do not count, however many a vector has.
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
-        for lane in bits(counted) {
-            tally.traversed += tiles_in(batch, lane, clip);
+        if buffer.count_tiles() {
+            for lane in bits(counted) {
+                tally.traversed += tiles_in(batch, lane, clip);
+            }
         }
         stopped.is_none()
     }

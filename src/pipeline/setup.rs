@@ -203,8 +203,8 @@ pub(super) fn set_up<S: Simd>(setup: Setup<'_, S>, [a, b, c]: [Corner<S>; 3], n:
     store_edge!(middle_slope, middle_slope);
     store!(row0, s.to_f(row0));
     store!(row1, s.to_f(row1));
-    store!(column0, s.to_f(column0));
-    store!(column1, s.to_f(column1));
+    store!(i column0, column0);
+    store!(i column1, column1);
     if !query {
         edges::replace_wide(batch, lanes & wide);
     }

@@ -51,6 +51,9 @@ pub(super) struct Lists {
     /// Of the strip's first row of tiles: number of column 0's block, and number of column 0's tile.
     block: Words,
     index: Words,
+    /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
+    top: Floats,
+    sub_row: Words,
     /// Depth bound's change from sub-tile to sub-tile, its clamp, and sub-tiles left of the box's first tile.
     across: Floats,
     clamp: Floats,
@@ -67,10 +70,9 @@ pub(super) struct Strips<'a> {
     /// Triangles whose strips were not listed yet, and the row to go on with of the first.
     todo: u32,
     row: u32,
-    /// Strips listed, the one to go on with, and of it the tile.
+    /// Strips listed, and the one to go on with.
     listed: usize,
     next: usize,
-    tile: u32,
 }
 
 /// What the tiles of a strip have in common; see [`Lists`].
@@ -93,7 +95,7 @@ impl<'a> Strips<'a> {
     pub fn new(lists: &'a mut MaybeUninit<Lists>, triangles: u32) -> Self {
         // SAFETY: every field is an array of `MaybeUninit`.
         let lists = unsafe { lists.assume_init_mut() };
-        Self { lists, todo: triangles, row: 0, listed: 0, next: 0, tile: 0 }
+        Self { lists, todo: triangles, row: 0, listed: 0, next: 0 }
     }
 
     /// Lane of the triangle, and row of tiles, in rows of a vector's height, of a strip.
@@ -109,6 +111,16 @@ impl<'a> Strips<'a> {
     pub fn opened(&self, k: usize) -> usize {
         // SAFETY: only those that `next` counted are asked for.
         unsafe { self.lists.opened.get_unchecked(k).assume_init() as usize }
+    }
+
+    /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
+    #[inline(always)]
+    pub fn rows(&self, strip: usize) -> (f32, i32) {
+        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
+        unsafe {
+            let sub_row = self.lists.sub_row.get_unchecked(strip).assume_init();
+            (self.lists.top.get_unchecked(strip).assume_init(), sub_row as i32)
+        }
     }
 
     /// What the tiles of a strip have in common.
@@ -187,7 +199,7 @@ impl<'a> Strips<'a> {
         }
         // SAFETY: there is room for a vector after `STRIPS`.
         unsafe { t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), t.i(last as i32)) };
-        (self.listed, self.next, self.tile) = (listed, 0, 0);
+        (self.listed, self.next) = (listed, 0);
     }
 
     /// Bounds the tiles of a vector of strips from number `k` on.
@@ -202,7 +214,9 @@ impl<'a> Strips<'a> {
         let row = t.and(place, t.i(LOW as i32));
         // SAFETY: lanes of a batch, whose arrays hold any vector.
         let of = |field: &Lanes<f32>| unsafe { t.lookup(field.as_ptr(), lane) };
-        let (column0, column1) = (of(&batch.column0), of(&batch.column1));
+        // SAFETY: as above.
+        let of_i = |field: &Lanes<u32>| unsafe { t.bits(t.lookup(field.as_ptr().cast(), lane)) };
+        let (column0, column1) = (t.to_f(of_i(&batch.column0)), t.to_f(of_i(&batch.column1)));
         // First and last row of pixels.
         let top = t.mul(t.to_f(row), t.f((height::<T>() * TILE_HEIGHT) as f32));
         let y0 = t.max(top, of(&batch.row0));
@@ -243,8 +257,11 @@ impl<'a> Strips<'a> {
             }
             t.store_f(self.lists.across.as_mut_ptr().add(k).cast(), of(&batch.z_across));
             t.store_f(self.lists.clamp.as_mut_ptr().add(k).cast(), of(&batch.z_clamp));
-            let tile_x0 = t.bits(t.lookup(batch.tile_x0.as_ptr().cast(), lane));
-            t.store_i(self.lists.sub_column.as_mut_ptr().add(k).cast(), t.shl::<2>(tile_x0));
+            t.store_i(self.lists.sub_column.as_mut_ptr().add(k).cast(), t.shl::<2>(of_i(&batch.tile_x0)));
+            t.store_f(self.lists.top.as_mut_ptr().add(k).cast(), top);
+            // Rows of sub-tiles below the box's first tile.
+            let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
+            t.store_i(self.lists.sub_row.as_mut_ptr().add(k).cast(), t.shl::<1>(rows_below));
             if height::<T>() == 1 {
                 t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), nearest);
             } else {
@@ -270,8 +287,8 @@ impl<'a> Strips<'a> {
             // there is room for a vector. Least depths are read of tiles of the buffer, where there is room for a
             // vector after the last, and where another thread may be writing, no others.
             unsafe {
-                let first = lists.first.get_unchecked(k).assume_init() + self.tile;
-                let count = lists.count.get_unchecked(k).assume_init() - self.tile;
+                let first = lists.first.get_unchecked(k).assume_init();
+                let count = lists.count.get_unchecked(k).assume_init();
                 let index = lists.index.get_unchecked(k).assume_init();
                 let least = buffer.least().add((index + (first & LOW)) as usize);
                 let inside = t.first(count as usize);
@@ -291,9 +308,10 @@ impl<'a> Strips<'a> {
                 strips += usize::from(n != 0);
                 if count <= T::LANES as u32 {
                     self.next += 1;
-                    self.tile = 0;
                 } else {
-                    self.tile += T::LANES as u32;
+                    // The rest comes in another go.
+                    lists.first.get_unchecked_mut(k).write(first + T::LANES as u32);
+                    lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
                     if strips == STRIPS {
                         break;
                     }

@@ -13,7 +13,7 @@ use core::mem::MaybeUninit;
 use super::batch::{Batch, Lanes};
 use super::setup::Alive;
 use super::strips::{self, Strips, height};
-use crate::buffer::{BLOCK, Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TilePlace, TileRect};
+use crate::buffer::{BLOCK, Buffer, SUB_TILES, TILE_WIDTH, TilePlace, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 
 /// The rows of a strip.
@@ -81,9 +81,9 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
     while let Some(open) = strips.next::<T, S>(t, buffer, clip, batch) {
         for k in 0..open.strips {
             let strip = strips.opened(k);
-            let (lane, y) = strips.place(strip);
+            let (lane, _) = strips.place(strip);
             // SAFETY: strips are fewer than there is room for; setup stored what it found of the lane.
-            unsafe { write_rows(t, batch, lane, y * height::<T>(), rows.get_unchecked_mut(strip).as_mut_ptr()) };
+            unsafe { write_rows(t, batch, lane, strips.rows(strip), rows.get_unchecked_mut(strip).as_mut_ptr()) };
         }
         for k in 0..open.tiles {
             let (strip, x) = strips.tile(k);
@@ -123,17 +123,19 @@ fn coverage<T: Simd>(t: T, left: T::I, right: T::I, x: u32) -> T::I {
     t.transpose_bytes(t.and_not(t.ones_shl(right), t.ones_shl(left)))
 }
 
-/// Writes the events and depths of the triangle in `lane`, from row `y` of tiles on.
+/// Writes the events and depths of the triangle in `lane`, from row `top` of pixels on.
 ///
 /// # Safety
 /// Setup stored all of the lane; `to` can be written.
 #[inline(always)]
-unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, y: u32, to: *mut Rows) {
+unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, (top, sub_row): (f32, i32), to: *mut Rows) {
     // SAFETY: the caller's contract.
     let of_d = |field: &Lanes<f64>| t.d(unsafe { field.get(lane) });
     // SAFETY: the caller's contract.
     let of = |field: &Lanes<f32>| t.f(unsafe { field.get(lane) });
-    let rows = t.to_f(t.add_i(t.i((y * TILE_HEIGHT) as i32), t.iota()));
+    // SAFETY: the caller's contract.
+    let of_i = |field: &Lanes<u32>| t.i(unsafe { field.get(lane) } as i32);
+    let rows = t.add(t.f(top), t.to_f(t.iota()));
     let row = t.to_d(rows);
     let left = t.add_d(of_d(&batch.left), t.mul_d(of_d(&batch.left_slope), row));
     let right = t.add_d(of_d(&batch.right), t.mul_d(of_d(&batch.right_slope), row));
@@ -142,13 +144,11 @@ unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, y: u32, to: *mut
     let right = t.d_to_i(t.min_d(right, t.add_d(of_d(&batch.middle_right), middle)));
     // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal. In rows outside
     // of the box they may be anything, and what does not fit in an integer, too.
-    let (column0, column1) = (t.trunc(of(&batch.column0)), t.trunc(of(&batch.column1)));
+    let (column0, column1) = (of_i(&batch.column0), of_i(&batch.column1));
     let left = t.min_i(t.max_i(left, column0), column1);
     let right = t.max_i(t.min_i(right, column1), column0);
     let inside = t.and_m(t.le(of(&batch.row0), rows), t.lt(rows, of(&batch.row1)));
     let right = t.select_i(inside, right, t.i(0));
-    // SAFETY: the caller's contract.
-    let sub_row = 2 * (y as i32 - unsafe { batch.tile_y0.get(lane) } as i32);
     let sub_row = t.to_f(t.add_i(t.i(sub_row), t.sra::<2>(t.iota())));
     let z = t.add(of(&batch.z), t.mul(of(&batch.z_down), sub_row));
     // SAFETY: the caller's contract; the arrays hold a vector.

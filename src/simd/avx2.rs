@@ -274,6 +274,14 @@ impl Simd for Avx2 {
         unsafe { _mm256_max_ps(a, b) }
     }
     #[inline(always)]
+    fn min_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.float_of_bits(self.min_i(self.bits(a), self.bits(b)))
+    }
+    #[inline(always)]
+    fn max_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.float_of_bits(self.max_i(self.bits(a), self.bits(b)))
+    }
+    #[inline(always)]
     fn abs(self, a: Self::F) -> __m256 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }

@@ -274,6 +274,14 @@ impl Simd for Avx512 {
         unsafe { _mm512_max_ps(a, b) }
     }
     #[inline(always)]
+    fn min_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.float_of_bits(self.min_i(self.bits(a), self.bits(b)))
+    }
+    #[inline(always)]
+    fn max_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.float_of_bits(self.max_i(self.bits(a), self.bits(b)))
+    }
+    #[inline(always)]
     fn abs(self, a: Self::F) -> __m512 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_abs_ps(a) }
@@ -328,9 +336,9 @@ impl Simd for Avx512 {
         // SAFETY: the token, and the caller's contract.
         unsafe {
             // Within the halves of the register.
-            let m = _mm512_min_ps(a, _mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
-            let m = _mm512_min_ps(m, _mm512_permute_ps::<0b01_00_11_10>(m));
-            let m = _mm512_min_ps(m, _mm512_permute_ps::<0b10_11_00_01>(m));
+            let m = self.min_positive(a, _mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
+            let m = self.min_positive(m, _mm512_permute_ps::<0b01_00_11_10>(m));
+            let m = self.min_positive(m, _mm512_permute_ps::<0b10_11_00_01>(m));
             p.write(_mm512_cvtss_f32(m));
             p.add(pitch).write(_mm_cvtss_f32(_mm512_extractf32x4_ps::<2>(m)));
         }

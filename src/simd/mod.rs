@@ -112,6 +112,17 @@ pub(crate) trait Simd: Copy {
     fn div(self, a: Self::F, b: Self::F) -> Self::F;
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `min` of numbers that are not negative (nor -0): their bits compare as integers do, which is cheaper here and
+    /// there.
+    #[inline(always)]
+    fn min_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.min(a, b)
+    }
+    /// `max` likewise.
+    #[inline(always)]
+    fn max_positive(self, a: Self::F, b: Self::F) -> Self::F {
+        self.max(a, b)
+    }
     fn abs(self, a: Self::F) -> Self::F;
     fn lt(self, a: Self::F, b: Self::F) -> Self::M;
     fn le(self, a: Self::F, b: Self::F) -> Self::M;
@@ -124,7 +135,7 @@ pub(crate) trait Simd: Copy {
     fn to_f(self, a: Self::I) -> Self::F;
     fn bits(self, a: Self::F) -> Self::I;
     fn float_of_bits(self, a: Self::I) -> Self::F;
-    /// The least of the first eight lanes to `p`; of the second eight, if there are any, to `p + pitch`. A vector of
+    /// The least of the first eight lanes, none of which is negative, to `p`; of the second eight, if there are any, to `p + pitch`. A vector of
     /// four lanes has one least.
     /// # Safety
     /// Both can be written.

@@ -71,6 +71,10 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
         results.extend(
             [s.add(a, b), s.sub(a, b), s.mul(a, b), s.div(a, b), s.min(a, b), s.max(a, b), s.abs(a)].map(floats),
         );
+        let (positive_a, positive_b) = (s.abs(a), s.abs(b));
+        let ordered = s.and_m(s.eq(a, a), s.eq(b, b));
+        let positive = [s.min_positive(positive_a, positive_b), s.max_positive(positive_a, positive_b)];
+        results.extend(positive.map(|x| floats(s.select(ordered, x, s.f(0.0)))));
         results.extend(
             [m, s.le(a, b), s.eq(a, b), k, s.eq_i(i, j), s.and_m(m, k), s.or_m(m, k), s.and_not_m(m, k)].map(masks),
         );
@@ -138,8 +142,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
         }
     }
     // Of each eight lanes; a vector of four has the least of its own.
-    // Which of two zeros is less differs.
-    let numbers = input.a.map(|x| if x.is_nan() || x == 0.0 { 0.0 } else { x });
+    let numbers = input.a.map(|x| if x.is_nan() { 0.0 } else { x.abs() });
     let mut least = [f32::INFINITY; 2];
     for first in (0..N).step_by(S::LANES) {
         let mut stored = [f32::INFINITY; 2];

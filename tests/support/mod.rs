@@ -25,7 +25,8 @@ pub fn object(
     axis: YAxis,
     size: (usize, usize),
 ) -> MaskedOcclusionCulling {
-    let settings = Settings { implementation, update_rule: rule, y_axis: axis, allocator: Allocator::SYSTEM };
+    let settings =
+        Settings { implementation, update_rule: rule, y_axis: axis, allocator: Allocator::SYSTEM, count_tiles: true };
     let mut moc = MaskedOcclusionCulling::new(settings);
     assert_eq!(moc.implementation(), implementation, "an available instruction set is refused");
     moc.set_resolution(size.0 as u32, size.1 as u32).unwrap();
