@@ -263,6 +263,20 @@ impl TilePlace {
     }
 }
 
+/// Was something drawn since the last clear into a tile, and for vectors of sixteen lanes, into the tile below?
+///
+/// # Safety
+/// As [`load`].
+#[inline(always)]
+pub(crate) unsafe fn touched<S: Simd>(buffer: &Buffer, at: TilePlace) -> bool {
+    // SAFETY: the caller's contract; blocks are whole.
+    unsafe {
+        let below = if S::LANES == SUB_TILES { 0 } else { buffer.tiles_w() as usize };
+        // Of all least depths only `UNTOUCHED` is negative.
+        ((*at.least).to_bits() | (*at.least.add(below)).to_bits()) as i32 >= 0
+    }
+}
+
 /// What is in a tile, or, for a vector of sixteen lanes and an even row, in it and in the tile below.
 ///
 /// # Safety

@@ -7,6 +7,14 @@ use crate::simd::Simd;
 
 pub(crate) struct Quick;
 
+impl Quick {
+    /// The depth of the empty layer that a full one leaves.
+    #[inline(always)]
+    fn left_behind<S: Simd>(s: S, _: S::F) -> S::F {
+        s.f(0.0)
+    }
+}
+
 impl Rule for Quick {
     two_plane_layout!();
 

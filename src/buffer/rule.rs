@@ -42,6 +42,13 @@ pub(crate) trait Rule {
     /// nearer than what was drawn.
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, coverage: S::I, depth: S::F) -> Inserted<S>;
 
+    /// Takes in all pixels at `depth` without reading all that is there, if that depth is nearer than all of it. False:
+    /// it is not, and nothing was done.
+    ///
+    /// # Safety
+    /// As [`Self::store`].
+    unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool;
+
     /// Lanes in which something at `depth` or farther, in the pixels `touched`, is certainly hidden.
     /// Lanes that touch no pixel are hidden.
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M;
@@ -88,6 +95,22 @@ macro_rules! two_plane_layout {
                 s.store_f(p.cast(), planes.z0);
                 s.store_f(p.add(BLOCK).cast(), planes.z_near);
                 s.store_i(p.add(2 * BLOCK), planes.near);
+            }
+        }
+
+        #[inline(always)]
+        unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
+            // SAFETY: the caller's contract.
+            unsafe {
+                let (z0, z_near) = (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()));
+                let nearer = s.and_m(s.lt(z0, depth), s.lt(z_near, depth));
+                if s.mask_bits(nearer) != ((1_u64 << S::LANES) - 1) as u32 {
+                    return false;
+                }
+                // What the rule makes of it: everything is the reference, and the layer is empty.
+                let planes = Planes { z0: depth, z_near: Self::left_behind(s, depth), ..Self::empty(s) };
+                Self::store(s, p, &planes);
+                true
             }
         }
 

@@ -84,6 +84,22 @@ impl Rule for ThreeLayer {
     }
 
     #[inline(always)]
+    unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
+        // SAFETY: the caller's contract.
+        unsafe {
+            // No other depth is nearer than the near layer's.
+            let z_near = s.load_f(p.add(BLOCK).cast());
+            if s.mask_bits(s.lt(z_near, depth)) != ((1_u64 << S::LANES) - 1) as u32 {
+                return false;
+            }
+            // What `insert` makes of it: the near layer becomes the far one, and nothing hides behind it any more.
+            let full = s.i(-1);
+            Self::store(s, p, &Planes { z0: depth, z_near: depth, z_far: z_near, near: full, far: full });
+            true
+        }
+    }
+
+    #[inline(always)]
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
         let nothing = s.eq_i(touched, s.i(0));
         let reference = s.or_m(nothing, s.lt(depth, planes.z0));

@@ -12,7 +12,7 @@ use super::traverse::{Lists, TileStep, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
-    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, load,
+    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, load, touched,
 };
 use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
@@ -205,6 +205,21 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     }
 
     #[inline(always)]
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool {
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        unsafe {
+            if touched::<T>(self.buffer, at) && R::replace(t, at.planes, depth) {
+                t.store_least(at.least, self.buffer.tiles_w() as usize, depth);
+                if COUNT {
+                    self.counts += if T::LANES == SUB_TILES { 0x0001_0001 } else { 0x0101_0101 };
+                }
+                return true;
+            }
+            self.tile(t, at, t.i(-1), depth)
+        }
+    }
+
+    #[inline(always)]
     fn tiles_done(&mut self) {
         const { assert!(MAX_TILES < 256) }
         if !COUNT {
@@ -290,6 +305,12 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at), covered, depth) };
         t.mask_bits(hidden) == ((1_u64 << T::LANES) - 1) as u32
+    }
+
+    #[inline(always)]
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool {
+        // SAFETY: the caller's contract.
+        unsafe { self.tile(t, at, t.i(-1), depth) }
     }
 }
 

@@ -51,6 +51,9 @@ pub(super) struct Lists {
     /// Of the strip's first row of tiles: number of column 0's block, and number of column 0's tile.
     block: Words,
     index: Words,
+    /// First column and number of the tiles that are covered wholly.
+    inner_first: Words,
+    inner: Words,
     /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
     top: Floats,
     sub_row: Words,
@@ -79,6 +82,8 @@ pub(super) struct Strips<'a> {
 pub(super) struct Common {
     pub block: u32,
     pub index: u32,
+    pub inner_first: u32,
+    pub inner: u32,
     pub across: f32,
     pub clamp: f32,
     pub sub_column: u32,
@@ -123,6 +128,13 @@ impl<'a> Strips<'a> {
         }
     }
 
+    /// Number of column 0's block of a strip.
+    #[inline(always)]
+    pub fn block(&self, strip: usize) -> u32 {
+        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
+        unsafe { self.lists.block.get_unchecked(strip).assume_init() }
+    }
+
     /// What the tiles of a strip have in common.
     #[inline(always)]
     pub fn common(&self, strip: usize) -> Common {
@@ -131,6 +143,8 @@ impl<'a> Strips<'a> {
             Common {
                 block: self.lists.block.get_unchecked(strip).assume_init(),
                 index: self.lists.index.get_unchecked(strip).assume_init(),
+                inner_first: self.lists.inner_first.get_unchecked(strip).assume_init(),
+                inner: self.lists.inner.get_unchecked(strip).assume_init(),
                 across: self.lists.across.get_unchecked(strip).assume_init(),
                 clamp: self.lists.clamp.get_unchecked(strip).assume_init(),
                 sub_column: self.lists.sub_column.get_unchecked(strip).assume_init(),
@@ -225,13 +239,22 @@ impl<'a> Strips<'a> {
         let span = Span { t, y0, y1 };
 
         let edges = &batch.rounded;
-        let [left, _] = span.bounds(of(&edges.left), of(&edges.left_slope));
-        let [_, right] = span.bounds(of(&edges.right), of(&edges.right_slope));
+        let left = span.bounds(of(&edges.left), of(&edges.left_slope));
+        let right = span.bounds(of(&edges.right), of(&edges.right_slope));
         let slope = of(&edges.middle_slope);
-        let [middle_left, _] = span.bounds(of(&edges.middle_left), slope);
-        let [_, middle_right] = span.bounds(of(&edges.middle_right), slope);
-        let left = t.min(t.max(t.max(left, middle_left), column0), column1);
-        let right = t.max(t.min(t.min(right, middle_right), column1), column0);
+        let middle_left = span.bounds(of(&edges.middle_left), slope);
+        let middle_right = span.bounds(of(&edges.middle_right), slope);
+        // All rows lie between these events: tiles between them are covered wholly.
+        let inner_left = t.min(t.max(t.max(left[1], middle_left[1]), column0), column1);
+        let inner_right = t.max(t.min(t.min(right[0], middle_right[0]), column1), column0);
+        let whole = t.and_m(t.le(of(&batch.row0), top), t.le(bottom, of(&batch.row1)));
+        let inner_first = t.sra::<5>(t.add_i(t.trunc(inner_left), t.i(TILE_WIDTH as i32 - 1)));
+        let inner_end = t.sra::<5>(t.trunc(inner_right));
+        let inner = t.select_i(whole, t.max_i(t.sub_i(inner_end, inner_first), t.i(0)), t.i(0));
+
+        // No row reaches beyond these.
+        let left = t.min(t.max(t.max(left[0], middle_left[0]), column0), column1);
+        let right = t.max(t.min(t.min(right[1], middle_right[1]), column1), column0);
         // Events are rounded down.
         let (left, right) = (t.trunc(left), t.trunc(right));
         let first = t.max_i(t.sra::<5>(left), t.i(clip.x0 as i32));
@@ -258,6 +281,8 @@ impl<'a> Strips<'a> {
             t.store_f(self.lists.across.as_mut_ptr().add(k).cast(), of(&batch.z_across));
             t.store_f(self.lists.clamp.as_mut_ptr().add(k).cast(), of(&batch.z_clamp));
             t.store_i(self.lists.sub_column.as_mut_ptr().add(k).cast(), t.shl::<2>(of_i(&batch.tile_x0)));
+            t.store_i(self.lists.inner_first.as_mut_ptr().add(k).cast(), inner_first);
+            t.store_i(self.lists.inner.as_mut_ptr().add(k).cast(), inner);
             t.store_f(self.lists.top.as_mut_ptr().add(k).cast(), top);
             // Rows of sub-tiles below the box's first tile.
             let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));

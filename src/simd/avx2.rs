@@ -210,6 +210,11 @@ impl Simd for Avx2 {
         }
     }
     #[inline(always)]
+    fn prefetch(self, p: *const u32) {
+        // SAFETY: the token proves the instruction set; a prefetch reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
+    }
+    #[inline(always)]
     unsafe fn store_least(self, p: *mut f32, _: usize, a: __m256) {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -332,6 +332,11 @@ impl Simd for Avx512 {
         unsafe { _mm512_castsi512_ps(a) }
     }
     #[inline(always)]
+    fn prefetch(self, p: *const u32) {
+        // SAFETY: the token proves the instruction set; a prefetch reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
+    }
+    #[inline(always)]
     unsafe fn store_least(self, p: *mut f32, pitch: usize, a: __m512) {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -135,6 +135,9 @@ pub(crate) trait Simd: Copy {
     fn to_f(self, a: Self::I) -> Self::F;
     fn bits(self, a: Self::F) -> Self::I;
     fn float_of_bits(self, a: Self::I) -> Self::F;
+    /// Asks for the cache line at `p`, which may be any address.
+    #[inline(always)]
+    fn prefetch(self, _: *const u32) {}
     /// The least of the first eight lanes, none of which is negative, to `p`; of the second eight, if there are any, to `p + pitch`. A vector of
     /// four lanes has one least.
     /// # Safety

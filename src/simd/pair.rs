@@ -196,6 +196,10 @@ impl<S: Simd> Simd for Pair<S> {
         [self.0.sra::<N>(a[0]), self.0.sra::<N>(a[1])]
     }
     #[inline(always)]
+    fn prefetch(self, p: *const u32) {
+        self.0.prefetch(p);
+    }
+    #[inline(always)]
     unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F) {
         // SAFETY: the caller's contract.
         unsafe { self.0.store_least(p, pitch, self.0.min(a[0], a[1])) }
