@@ -13,7 +13,9 @@ static MaskedOcclusionCulling *make(int32_t implementation, int32_t rule, int32_
     CHECK_EQ(settings.update_rule, MOC_UPDATE_RULE_THREE_LAYER);
     CHECK_EQ(settings.y_axis, MOC_Y_AXIS_DOWN);
     CHECK_EQ(settings.precise_coverage, 1);
+    CHECK_EQ(settings.statistics, 0);
     CHECK(settings.alloc == NULL && settings.free == NULL);
+    settings.statistics = 1;
     settings.implementation = implementation;
     settings.update_rule = rule;
     settings.y_axis = y_axis;

@@ -1,4 +1,5 @@
 // Several threads bin and draw one object, and query it, at once: the same bits and answers as with one.
+#define ENABLE_STATS 1
 #include "check.h"
 
 #include "MaskedOcclusionCulling.h"

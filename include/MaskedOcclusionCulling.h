@@ -38,8 +38,8 @@
  * USE_D3D           1: row 0 is the top of the screen (default); 0: the bottom (OpenGL).
  * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
- * ENABLE_STATS      1: GetStatistics counts tiles, too, which takes a twentieth of the time of a draw. 0 (default):
- *                   it counts triangles and rectangles.
+ * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
+ *                   0 (default): GetStatistics answers zeros.
  *
  * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
@@ -70,7 +70,7 @@
 #endif
 
 /* The switches as the template argument of Create. Bits 0 and 1: MOC_UpdateRule; 2: MOC_YAxis; 3: precise
- * coverage; 4: AVX2 at most; 5: count tiles. */
+ * coverage; 4: AVX2 at most; 5: statistics. */
 #ifndef QUICK_MASK
 #define MOC_DETAIL_RULE 0u
 #elif QUICK_MASK
@@ -190,7 +190,7 @@ public:
         float *mPtr;                /**< 9 floats a triangle */
     };
 
-    /** Counts since the object was made, the same on every instruction set. Tiles are counted with ENABLE_STATS 1. */
+    /** Counts since the object was made with ENABLE_STATS 1, the same on every instruction set. */
     struct OcclusionCullingStatistics
     {
         struct
@@ -431,7 +431,7 @@ private:
         settings.update_rule = static_cast<int32_t>(switches & 3u);
         settings.y_axis = (switches & 4u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
         settings.precise_coverage = (switches & 8u) != 0 ? 1 : 0;
-        settings.count_tiles = (switches & 32u) != 0 ? 1 : 0;
+        settings.statistics = (switches & 32u) != 0 ? 1 : 0;
         settings.alloc = alignedAlloc;
         settings.free = alignedFree;
         MaskedOcclusionCulling *moc = nullptr;

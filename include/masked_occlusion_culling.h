@@ -342,9 +342,10 @@ typedef struct MOC_Settings {
      */
     int32_t precise_coverage;
     /**
-     * 0 or 1. 1: the statistics count tiles, too, which takes a twentieth of the time of a draw. Default 0.
+     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: of
+     * all counts only that of dropped triangles is kept. Default 0.
      */
-    int32_t count_tiles;
+    int32_t statistics;
     /**
      * Where all memory of the object comes from. Null, together with `free`: the system. Default null.
      */
@@ -466,7 +467,7 @@ typedef struct MOC_OccludeeStatistics {
      */
     int64_t num_rasterized_triangles;
     /**
-     * Tiles that rectangles and triangles were compared with.
+     * Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
      */
     int64_t num_tiles_traversed;
 } MOC_OccludeeStatistics;

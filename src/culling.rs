@@ -27,8 +27,9 @@ pub struct Settings {
     pub y_axis: YAxis,
     /// Where the buffer's memory comes from.
     pub allocator: Allocator,
-    /// Whether the statistics count tiles: a twentieth of the time of a draw. Triangles are counted always.
-    pub count_tiles: bool,
+    /// Whether draws and queries are counted for [`MaskedOcclusionCulling::statistics`]: a tenth of the time of a draw. Dropped
+    /// triangles are counted always.
+    pub statistics: bool,
 }
 
 impl Default for Settings {
@@ -38,7 +39,7 @@ impl Default for Settings {
             update_rule: UpdateRule::default(),
             y_axis: YAxis::default(),
             allocator: Allocator::SYSTEM,
-            count_tiles: false,
+            statistics: false,
         }
     }
 }
@@ -70,7 +71,7 @@ pub struct MaskedOcclusionCulling {
     update_rule: UpdateRule,
     y_axis: YAxis,
     allocator: Allocator,
-    count_tiles: bool,
+    statistics: bool,
     near: f32,
     buffer: Option<Buffer>,
     counters: Counters,
@@ -90,7 +91,7 @@ impl MaskedOcclusionCulling {
             update_rule: settings.update_rule,
             y_axis: settings.y_axis,
             allocator: settings.allocator,
-            count_tiles: settings.count_tiles,
+            statistics: settings.statistics,
             near: 0.0,
             buffer: None,
             counters: Counters::default(),
@@ -126,7 +127,7 @@ impl MaskedOcclusionCulling {
             return Err(Error::InvalidSize);
         }
         if self.resolution() != Some((width, height)) {
-            self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator, self.count_tiles)?);
+            self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator, self.statistics)?);
         }
         self.clear_buffer()
     }
@@ -218,7 +219,7 @@ impl MaskedOcclusionCulling {
         let mesh = Mesh { vertices, triangles, options };
         // SAFETY: the caller's contract for the vertices; `&mut self` keeps every other user of the buffer away.
         let (result, tally) = unsafe { pipeline::draw(self.implementation, buffer, &camera, &mesh) };
-        self.counters.add_draw_alone(&tally);
+        self.counters.add_draw_alone(self.statistics, &tally);
         Ok(result)
     }
 
@@ -254,7 +255,7 @@ impl MaskedOcclusionCulling {
         let mesh = Mesh { vertices, triangles, options };
         // SAFETY: the caller's contract for the vertices.
         let (result, tally) = unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, &mesh) };
-        self.counters.add_query(0, &tally);
+        self.counters.add_query(self.statistics, 0, &tally);
         Ok(result)
     }
 
@@ -277,7 +278,7 @@ impl MaskedOcclusionCulling {
         let buffer = self.buffer()?;
         let (result, tally) =
             rectangle::test(self.implementation, buffer, self.y_axis, [x_min, y_min, x_max, y_max], w_min);
-        self.counters.add_query(1, &tally);
+        self.counters.add_query(self.statistics, 1, &tally);
         Ok(result)
     }
 
@@ -323,7 +324,7 @@ impl MaskedOcclusionCulling {
         // SAFETY: the caller's contract for the vertices.
         let (result, tally, full) =
             unsafe { pipeline::bin(self.implementation, buffer, &camera, &mesh, lists, bin_size, (bins_w, bins_h)) };
-        self.counters.add_draw(&tally);
+        self.counters.add_draw(self.statistics, &tally);
         if full { Err(Error::ListFull) } else { Ok(result) }
     }
 
@@ -350,7 +351,7 @@ impl MaskedOcclusionCulling {
         let scissor = buffer.scissor_tiles(scissor)?;
         // SAFETY: the caller's contract for the buffer.
         let tally = unsafe { pipeline::draw_list(self.implementation, buffer, list, scissor) };
-        self.counters.add_draw(&tally);
+        self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
 
@@ -367,7 +368,7 @@ impl MaskedOcclusionCulling {
         Ok(())
     }
 
-    /// All that was counted since the object was made.
+    /// All that was counted since the object was made; without [`Settings::statistics`] only the dropped triangles.
     pub fn statistics(&self) -> Statistics {
         self.counters.snapshot()
     }

@@ -11,6 +11,9 @@ use crate::{CullingResult, Implementation, UpdateRule, YAxis};
 /// From a rounded 1/w to a bound that is not farther than the true one.
 const NEARER: f32 = 1.0 + 1.0 / (1 << 23) as f32;
 
+/// Rows of tiles of a small rectangle.
+const SMALL: u32 = 4;
+
 /// Tests [x min, y min, x max, y max] in normalised device coordinates at `w_min`.
 pub(crate) fn test(
     implementation: Implementation,
@@ -85,23 +88,51 @@ impl<R: Rule> Job for Walk<'_, R> {
         let mut tally = Tally::default();
         let depth = s.f(self.depth);
         let (first, end) = (p.x0 / TILE_WIDTH, p.x1 / TILE_WIDTH + 1);
-        for y in p.y0 / TILE_HEIGHT..=p.y1 / TILE_HEIGHT {
-            let mut x = first;
-            while x < end {
+        let (top, bottom) = (p.y0 / TILE_HEIGHT, p.y1 / TILE_HEIGHT);
+        let lanes = S::LANES as u32;
+        // A small rectangle that whole tiles hide takes no loop, whose end would be guessed wrong every other time.
+        if bottom - top < SMALL && end - first <= lanes {
+            let mut any = s.first(0);
+            for row in 0..SMALL {
+                // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
+                let least = unsafe { s.load_f(buffer.least_of(first, (top + row).min(bottom))) };
+                any = s.or_m(any, s.le(least, depth));
+            }
+            if s.mask_bits(s.and_m(any, s.first((end - first) as usize))) == 0 {
+                return (CullingResult::Occluded, tally);
+            }
+        }
+        for y in top..=bottom {
+            // Lanes that are not behind their whole tile.
+            let open_from = |x: u32| {
                 // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
                 let least = unsafe { s.load_f(buffer.least_of(x, y)) };
-                // Lanes that are not behind their whole tile.
-                let mut open = s.mask_bits(s.and_m(s.first((end - x) as usize), s.le(least, depth)));
+                s.le(least, depth)
+            };
+            // Is there any in this row? One branch a row: most have none.
+            let mut x = first;
+            let mut any = s.first(0);
+            while x + lanes <= end {
+                any = s.or_m(any, open_from(x));
+                x += lanes;
+            }
+            any = s.or_m(any, s.and_m(s.first((end - x) as usize), open_from(x)));
+            if s.mask_bits(any) == 0 {
+                continue;
+            }
+            let mut x = first;
+            while x < end {
+                let mut open = s.mask_bits(s.and_m(s.first((end - x) as usize), open_from(x)));
                 while open != 0 {
                     let lane = open.trailing_zeros();
                     open &= open - 1;
-                    tally.traversed += u64::from(buffer.count_tiles());
+                    tally.traversed += u64::from(buffer.statistics());
                     // SAFETY: one of the tiles that the rectangle touches.
                     if unsafe { self.sees_tile(s, x + lane, y) } {
                         return (CullingResult::Visible, tally);
                     }
                 }
-                x += S::LANES as u32;
+                x += lanes;
             }
         }
         (CullingResult::Occluded, tally)

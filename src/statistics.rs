@@ -22,22 +22,24 @@ pub(crate) struct Counters {
 }
 
 impl Counters {
-    pub fn add_draw(&self, t: &Tally) {
-        let counts = [t.processed, t.rasterized, t.traversed, t.updated, t.merged, t.dropped];
-        add(&self.occluders, counts);
+    /// `all`: not only the dropped triangles.
+    pub fn add_draw(&self, all: bool, t: &Tally) {
+        add(&self.occluders, draw_counts(all, t));
     }
 
     /// The same without an atomic addition, of which each costs as much as a tile's depth test.
-    pub fn add_draw_alone(&mut self, t: &Tally) {
-        let counts = [t.processed, t.rasterized, t.traversed, t.updated, t.merged, t.dropped];
-        for (counter, n) in self.occluders.iter_mut().zip(counts) {
+    pub fn add_draw_alone(&mut self, all: bool, t: &Tally) {
+        for (counter, n) in self.occluders.iter_mut().zip(draw_counts(all, t)) {
             *counter.get_mut() += n as i64;
         }
     }
 
-    pub fn add_query(&self, rectangles: u64, t: &Tally) {
-        let counts = [rectangles, t.processed, t.rasterized, t.traversed];
-        add(&self.occludees, counts);
+    /// `all`: anything at all.
+    #[inline]
+    pub fn add_query(&self, all: bool, rectangles: u64, t: &Tally) {
+        if all {
+            add(&self.occludees, [rectangles, t.processed, t.rasterized, t.traversed]);
+        }
     }
 
     pub fn snapshot(&self) -> Statistics {
@@ -59,6 +61,16 @@ impl Counters {
                 num_tiles_traversed: q[3],
             },
         }
+    }
+}
+
+/// What a draw adds.
+#[inline]
+fn draw_counts(all: bool, t: &Tally) -> [u64; 6] {
+    if all {
+        [t.processed, t.rasterized, t.traversed, t.updated, t.merged, t.dropped]
+    } else {
+        [0, 0, 0, 0, 0, t.dropped]
     }
 }
 

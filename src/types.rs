@@ -221,7 +221,7 @@ pub struct OccludeeStatistics {
     pub num_processed_triangles: i64,
     /// Those of them that were compared with the buffer, up to the first that may be seen.
     pub num_rasterized_triangles: i64,
-    /// Tiles that rectangles and triangles were compared with, sub-tile by sub-tile.
+    /// Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
     pub num_tiles_traversed: i64,
 }
 

@@ -22,7 +22,7 @@ fn objects(scene: &Scene, update_rule: UpdateRule) -> Vec<MaskedOcclusionCulling
             let mut moc = MaskedOcclusionCulling::new(Settings {
                 implementation,
                 update_rule,
-                count_tiles: true,
+                statistics: true,
                 ..Settings::default()
             });
             moc.set_resolution(333, 205).unwrap();
@@ -91,8 +91,7 @@ fn lists_count_the_same_everywhere() {
 #[test]
 fn counts_are_what_was_asked() {
     for &implementation in Implementation::available() {
-        let mut moc =
-            MaskedOcclusionCulling::new(Settings { implementation, count_tiles: true, ..Settings::default() });
+        let mut moc = MaskedOcclusionCulling::new(Settings { implementation, statistics: true, ..Settings::default() });
         moc.set_resolution(64, 16).unwrap();
         let wall = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0], [f32::NAN; 4]];
         let vertices = Vertices::from_clip_space(&wall);

@@ -40,7 +40,7 @@ impl Family {
             let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
                 if own_allocator { (Some(memory::alloc), Some(memory::free)) } else { (None, None) };
             let settings =
-                MOC_Settings { implementation, update_rule, y_axis, precise_coverage: 1, count_tiles: 1, alloc, free };
+                MOC_Settings { implementation, update_rule, y_axis, precise_coverage: 1, statistics: 1, alloc, free };
             let (mut moc, mut used) = (null_mut(), 0);
             // SAFETY: the settings and the place for the object are valid, the callbacks are an allocator.
             let status = unsafe { MOC_Create(&settings, &mut moc) } as i32;

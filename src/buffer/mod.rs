@@ -60,7 +60,7 @@ pub(crate) struct Buffer {
     tiles_w: u32,
     tiles_h: u32,
     rule: UpdateRule,
-    count_tiles: bool,
+    statistics: bool,
     planes: AlignedWords,
     least: AlignedWords,
     /// For the blocks that the screen's edge cuts: which pixels of each sub-tile are outside.
@@ -77,7 +77,7 @@ impl Buffer {
         height: u32,
         rule: UpdateRule,
         allocator: Allocator,
-        count_tiles: bool,
+        statistics: bool,
     ) -> Result<Self, Error> {
         let (tiles_w, tiles_h) = (width.div_ceil(TILE_WIDTH), height.div_ceil(TILE_HEIGHT));
         // Whole blocks.
@@ -90,7 +90,7 @@ impl Buffer {
             tiles_w,
             tiles_h,
             rule,
-            count_tiles,
+            statistics,
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
             // The widest vector may be loaded from the last of them.
             least: AlignedWords::new(tiles + MAX_LANES, allocator)?,
@@ -118,9 +118,9 @@ impl Buffer {
         self.rule
     }
 
-    /// Do the statistics of draws and queries count tiles?
-    pub fn count_tiles(&self) -> bool {
-        self.count_tiles
+    /// Are draws and queries counted?
+    pub fn statistics(&self) -> bool {
+        self.statistics
     }
 
     /// Every tile of the buffer.

@@ -12,7 +12,7 @@ const DEFAULTS: MOC_Settings = MOC_Settings {
     update_rule: MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32,
     y_axis: MOC_YAxis::MOC_Y_AXIS_DOWN as i32,
     precise_coverage: 1,
-    count_tiles: 0,
+    statistics: 0,
     alloc: None,
     free: None,
 };
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn MOC_Create(
             update_rule: types::update_rule(settings.update_rule)?,
             y_axis: types::y_axis(settings.y_axis)?,
             allocator,
-            count_tiles: types::flag(settings.count_tiles)?,
+            statistics: types::flag(settings.statistics)?,
         };
         let moc = MaskedOcclusionCulling::new(settings);
         let place = allocator.allocate(object_layout()?)?.cast::<MaskedOcclusionCulling>().as_ptr();

@@ -110,8 +110,9 @@ pub struct MOC_Settings {
     pub y_axis: i32,
     /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
     pub precise_coverage: i32,
-    /// 0 or 1. 1: the statistics count tiles, too, which takes a twentieth of the time of a draw. Default 0.
-    pub count_tiles: i32,
+    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: of
+    /// all counts only that of dropped triangles is kept. Default 0.
+    pub statistics: i32,
     /// Where all memory of the object comes from. Null, together with `free`: the system. Default null.
     pub alloc: MOC_AlignedAlloc,
     /// Takes back what `alloc` gave. Null exactly when `alloc` is.
@@ -189,7 +190,7 @@ pub struct MOC_OccludeeStatistics {
     pub num_processed_triangles: i64,
     /// Those of them that were compared with the buffer, up to the first visible one.
     pub num_rasterized_triangles: i64,
-    /// Tiles that rectangles and triangles were compared with.
+    /// Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
     pub num_tiles_traversed: i64,
 }
 

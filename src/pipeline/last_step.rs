@@ -89,13 +89,13 @@ impl<T: Simd> LastStep for Draw<'_, T> {
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         tally.rasterized += u64::from(alive.rasterized.count_ones());
-        if alive.lanes == 0 && !self.buffer.count_tiles() {
+        if alive.lanes == 0 && !self.buffer.statistics() {
             return true;
         }
         let &mut Self { t, buffer, clip, ref mut lists } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
-        if !buffer.count_tiles() {
+        if !buffer.statistics() {
             match buffer.rule() {
                 UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer, false>::new(buffer) }).0,
                 UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, false>::new(buffer) }).0,
@@ -265,7 +265,7 @@ impl<T: Simd> LastStep for Query<'_, T> {
         // Triangles after the first that may be seen do not count, however many a vector has.
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
-        if buffer.count_tiles() {
+        if buffer.statistics() {
             for lane in bits(counted) {
                 tally.traversed += tiles_in(batch, lane, clip);
             }

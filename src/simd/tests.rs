@@ -34,6 +34,7 @@ impl Job for AllOperations {
 fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     let mut out: Vec<Vec<u32>> = Vec::new();
     let mut kept = Vec::new();
+    let mut stored_records = Vec::new();
     let count_of_lanes = input.index[0] as usize;
     for first in (0..N).step_by(S::LANES) {
         let mut results: Vec<Vec<u32>> = Vec::new();
@@ -124,7 +125,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let mut stored = [0.0_f32; 4 * N];
             s.store_records(stored.as_mut_ptr(), records);
             for lane in stored[..4 * S::LANES].chunks(4) {
-                kept.extend(lane[..3].iter().map(|x| x.to_bits()));
+                stored_records.extend(lane[..3].iter().map(|x| x.to_bits()));
             }
             let n = count_of_lanes.saturating_sub(first);
             results.push(lanes(s.load_some(input.i.as_ptr().add(first), n)));
@@ -153,6 +154,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
         }
     }
     out.push(least.map(f32::to_bits).to_vec());
+    out.push(stored_records);
     out.push(kept);
     out.concat()
 }

@@ -26,7 +26,7 @@ pub fn object(
     size: (usize, usize),
 ) -> MaskedOcclusionCulling {
     let settings =
-        Settings { implementation, update_rule: rule, y_axis: axis, allocator: Allocator::SYSTEM, count_tiles: true };
+        Settings { implementation, update_rule: rule, y_axis: axis, allocator: Allocator::SYSTEM, statistics: true };
     let mut moc = MaskedOcclusionCulling::new(settings);
     assert_eq!(moc.implementation(), implementation, "an available instruction set is refused");
     moc.set_resolution(size.0 as u32, size.1 as u32).unwrap();
