@@ -1,5 +1,4 @@
 // Several threads bin and draw one object, and query it, at once: the same bits and answers as with one.
-#define ENABLE_STATS 1
 #include "check.h"
 
 #include "MaskedOcclusionCulling.h"
@@ -80,6 +79,7 @@ void Run(int32_t implementation, int32_t rule, const Scene &scene)
     settings.implementation = implementation;
     settings.update_rule = rule;
     MOC *one = nullptr, *many = nullptr;
+    settings.statistics = 1;
     CHECK_EQ(MOC_Create(&settings, &one), MOC_STATUS_OK);
     CHECK_EQ(MOC_Create(&settings, &many), MOC_STATUS_OK);
     one->SetResolution(W, H);

@@ -11,9 +11,6 @@ use crate::{CullingResult, Implementation, UpdateRule, YAxis};
 /// From a rounded 1/w to a bound that is not farther than the true one.
 const NEARER: f32 = 1.0 + 1.0 / (1 << 23) as f32;
 
-/// Rows of tiles of a small rectangle.
-const SMALL: u32 = 4;
-
 /// Tests [x min, y min, x max, y max] in normalised device coordinates at `w_min`.
 pub(crate) fn test(
     implementation: Implementation,
@@ -90,18 +87,6 @@ impl<R: Rule> Job for Walk<'_, R> {
         let (first, end) = (p.x0 / TILE_WIDTH, p.x1 / TILE_WIDTH + 1);
         let (top, bottom) = (p.y0 / TILE_HEIGHT, p.y1 / TILE_HEIGHT);
         let lanes = S::LANES as u32;
-        // A small rectangle that whole tiles hide takes no loop, whose end would be guessed wrong every other time.
-        if bottom - top < SMALL && end - first <= lanes {
-            let mut any = s.first(0);
-            for row in 0..SMALL {
-                // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
-                let least = unsafe { s.load_f(buffer.least_of(first, (top + row).min(bottom))) };
-                any = s.or_m(any, s.le(least, depth));
-            }
-            if s.mask_bits(s.and_m(any, s.first((end - first) as usize))) == 0 {
-                return (CullingResult::Occluded, tally);
-            }
-        }
         for y in top..=bottom {
             // Lanes that are not behind their whole tile.
             let open_from = |x: u32| {
