@@ -38,31 +38,21 @@ impl Job for IndexRange<'_> {
 
 #[inline(always)]
 fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
-    let (mut least, mut largest) = (u32::MAX, 0);
-    let vectors = indices.chunks_exact(S::LANES);
-    for &index in vectors.remainder() {
-        (least, largest) = (least.min(index), largest.max(index));
+    // The least is the complement of the largest complement.
+    let (mut low, mut high) = (s.i(0), s.i(0));
+    let mut done = 0;
+    while done < indices.len() {
+        let left = indices.len() - done;
+        // SAFETY: no more is read than is left.
+        let index = unsafe {
+            let p = indices.as_ptr().add(done);
+            if left >= S::LANES { s.load_i(p) } else { s.select_i(s.first(left), s.load_some(p, left), s.i(*p as i32)) }
+        };
+        low = s.max_u(low, s.and_not(index, s.i(-1)));
+        high = s.max_u(high, index);
+        done += S::LANES;
     }
-    if indices.len() >= S::LANES {
-        // The least is the complement of the largest complement.
-        let (mut low, mut high) = (s.i(0), s.i(0));
-        for vector in vectors {
-            // SAFETY: the slice has as many lanes.
-            let index = unsafe { s.load_i(vector.as_ptr()) };
-            low = s.max_u(low, s.and_not(index, s.i(-1)));
-            high = s.max_u(high, index);
-        }
-        let mut lanes = [[0_u32; MAX_LANES]; 2];
-        // SAFETY: sixteen words hold a vector.
-        unsafe {
-            s.store_i(lanes[0].as_mut_ptr(), low);
-            s.store_i(lanes[1].as_mut_ptr(), high);
-        }
-        for lane in 0..S::LANES {
-            (least, largest) = (least.min(!lanes[0][lane]), largest.max(lanes[1][lane]));
-        }
-    }
-    (least, largest)
+    (!s.largest_u(low), s.largest_u(high))
 }
 
 /// Where the corners of a chunk's triangles are in the scratch.
@@ -107,11 +97,13 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
         let group = unsafe { Group::new(s, mesh.triangles, position, count, numbering, facing, scratch) };
         let sieve = group.sieve(s, L::PURPOSE, buffer, camera, facing);
         in_view |= sieve.in_view;
+        let kept = s.mask_bits(sieve.kept);
         if sieve.irregular == 0 {
-            // SAFETY: below `FULL` there is room.
-            unsafe { survivors.append(s, sieve.kept, &group.corners) };
+            if kept != 0 {
+                // SAFETY: below `FULL` there is room.
+                unsafe { survivors.append(s, sieve.kept, &group.corners) };
+            }
         } else {
-            let kept = s.mask_bits(sieve.kept);
             let mut lanes = [[0.0; MAX_LANES]; 9];
             for k in 0..9 {
                 // SAFETY: sixteen floats hold a vector.

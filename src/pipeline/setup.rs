@@ -66,7 +66,7 @@ pub(super) struct Setup<'a, S> {
     pub shared: bool,
 }
 
-/// Sets up the first `n` of a vector of triangles; the others are regular triangles, too.
+/// Sets up the first `n` of a vector of triangles; the others are regular, too, or all zeros.
 #[inline(always)]
 pub(super) fn set_up<S: Simd>(setup: Setup<'_, S>, [a, b, c]: [Corner<S>; 3], n: usize, batch: &mut Batch) -> Alive {
     let Setup { s, purpose, buffer, both_sides, shared } = setup;

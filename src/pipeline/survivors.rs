@@ -70,14 +70,14 @@ impl Survivors {
         self.len += n;
     }
 
-    /// The vector of triangles from `first` on. After the last triangle the last is repeated.
+    /// The vector of triangles from `first` on; what comes after the last is all zeros.
     #[inline(always)]
     pub fn vector<S: Simd>(&mut self, s: S, first: usize) -> [Corner<S>; 3] {
         assert!(first < self.len && self.len <= ROOM);
         if first + S::LANES > self.len {
             for lanes in &mut self.lanes {
-                let last = lanes[self.len - 1];
-                lanes[self.len..first + S::LANES].fill(last);
+                // SAFETY: there is room for a vector after the last triangle.
+                unsafe { s.store_f(lanes.as_mut_ptr().add(self.len).cast(), s.f(0.0)) };
             }
         }
         // SAFETY: there is room for a vector after the last triangle, and what comes there was just written.
@@ -89,6 +89,10 @@ impl Survivors {
     #[inline(always)]
     pub fn forget<S: Simd>(&mut self, s: S, n: usize) {
         assert!(n <= self.len && self.len < n + S::LANES);
+        if n == self.len {
+            self.len = 0;
+            return;
+        }
         for lanes in &mut self.lanes {
             // SAFETY: there is room for a vector after the last triangle.
             unsafe { s.store_f(lanes.as_mut_ptr().cast(), s.load_f(lanes.as_ptr().add(n).cast())) };

@@ -382,6 +382,15 @@ impl Simd for Avx2 {
         unsafe { _mm256_max_epu32(a, b) }
     }
     #[inline(always)]
+    fn largest_u(self, a: Self::I) -> u32 {
+        // SAFETY: the token proves the instruction set.
+        unsafe {
+            let m = _mm_max_epu32(_mm256_castsi256_si128(a), _mm256_extracti128_si256::<1>(a));
+            let m = _mm_max_epu32(m, _mm_shuffle_epi32::<0b01_00_11_10>(m));
+            _mm_cvtsi128_si32(_mm_max_epu32(m, _mm_shuffle_epi32::<0b10_11_00_01>(m))) as u32
+        }
+    }
+    #[inline(always)]
     fn shl<const N: i32>(self, a: __m256i) -> __m256i {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm256_slli_epi32::<N>(a) }

@@ -394,6 +394,11 @@ impl Simd for Avx512 {
         unsafe { _mm512_max_epu32(a, b) }
     }
     #[inline(always)]
+    fn largest_u(self, a: Self::I) -> u32 {
+        // SAFETY: the token proves the instruction set.
+        unsafe { _mm512_reduce_max_epu32(a) }
+    }
+    #[inline(always)]
     fn shl<const N: i32>(self, a: __m512i) -> __m512i {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sll_epi32(a, _mm_cvtsi32_si128(N)) }

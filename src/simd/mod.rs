@@ -156,6 +156,20 @@ pub(crate) trait Simd: Copy {
     fn max_i(self, a: Self::I, b: Self::I) -> Self::I;
     /// The larger as unsigned numbers.
     fn max_u(self, a: Self::I, b: Self::I) -> Self::I;
+    /// The largest lane as an unsigned number.
+    #[inline(always)]
+    fn largest_u(self, a: Self::I) -> u32 {
+        let mut lanes = [0; MAX_LANES];
+        // SAFETY: the array holds a vector.
+        unsafe { self.store_i(lanes.as_mut_ptr(), a) };
+        let mut largest = 0;
+        let mut lane = 0;
+        while lane < Self::LANES {
+            largest = largest.max(lanes[lane]);
+            lane += 1;
+        }
+        largest
+    }
     fn shl<const N: i32>(self, a: Self::I) -> Self::I;
     /// Shifts in copies of the sign.
     fn sra<const N: i32>(self, a: Self::I) -> Self::I;
