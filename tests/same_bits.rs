@@ -196,3 +196,47 @@ fn every_instruction_set_agrees_after_every_object() {
         }
     }
 }
+
+/// Triangles as wide as large screens, many a call: more tiles than the kernel's lists hold at a time.
+#[test]
+fn every_instruction_set_agrees_on_wide_triangles() {
+    for (w, h) in [(1920, 1080), (5000, 300), (300, 5000), (2560, 1440)] {
+        let mut bits = 0x2545_f491_4f6c_dd1d_u64;
+        let mut random = || {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            (bits >> 40) as f32 / (1 << 24) as f32
+        };
+        // A wall of two triangles, then others before and behind it, from corner to corner.
+        let mut vertices = vec![];
+        for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+            vertices.push([x * 10.0, y * 10.0, 0.0, 10.0]);
+        }
+        for _ in 0..3 * 60 {
+            let z = 2.0 + 18.0 * random();
+            vertices.push([(2.2 * random() - 1.1) * z, (2.2 * random() - 1.1) * z, 0.0, z]);
+        }
+        let indices: Vec<u32> = (0..vertices.len() as u32).collect();
+        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+        for rule in RULES {
+            let mut first: Option<Vec<u32>> = None;
+            for &implementation in Implementation::available() {
+                let settings = Settings { implementation, update_rule: rule, ..Settings::default() };
+                let mut moc = MaskedOcclusionCulling::new(settings);
+                moc.set_resolution(w, h).unwrap();
+                moc.render_triangles(Vertices::from_clip_space(&vertices), &indices, &options).unwrap();
+                let mut depth = vec![0.0; (w * h) as usize];
+                moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+                let who = format!("{implementation:?} {rule:?} {w}x{h}");
+                let hole = depth.iter().position(|d| *d < 0.0999);
+                assert_eq!(hole, None, "{who}");
+                let depth: Vec<u32> = depth.iter().map(|d| d.to_bits()).collect();
+                match &first {
+                    None => first = Some(depth),
+                    Some(first) => assert!(*first == depth, "{who}"),
+                }
+            }
+        }
+    }
+}

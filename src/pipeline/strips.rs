@@ -305,7 +305,7 @@ impl<'a> Strips<'a> {
     #[inline(always)]
     fn open<T: Simd, S: TileStep<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect) -> Open {
         let whole = clip == buffer.all_tiles();
-        let (mut strips, mut tiles) = (0, 0);
+        let (mut strips, mut tiles, mut named) = (0, 0, usize::MAX);
         while self.next < self.listed && tiles < TILES {
             let k = self.next;
             let lists = &mut *self.lists;
@@ -329,18 +329,16 @@ impl<'a> Strips<'a> {
                 let tile = t.add_i(t.i(first as i32), t.iota());
                 let n = t.compress(lists.tiles.as_mut_ptr().add(tiles).cast(), t.and_m(open, inside), tile);
                 tiles += n;
-                // A strip whose tiles were opened in several goes is named by each of them.
+                // A wide strip comes in several goes and is named once: there are no more names than strips.
                 lists.opened.get_unchecked_mut(strips).write(k as u32);
-                strips += usize::from(n != 0);
+                strips += usize::from(n != 0 && named != k);
+                named = if n != 0 { k } else { named };
                 if count <= T::LANES as u32 {
                     self.next += 1;
                 } else {
                     // The rest comes in another go.
                     lists.first.get_unchecked_mut(k).write(first + T::LANES as u32);
                     lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
-                    if strips == STRIPS {
-                        break;
-                    }
                 }
             }
         }
