@@ -1,5 +1,6 @@
 //! A second library, behind the functions of other.cpp in a shared object.
 
+use std::error::Error;
 use std::ffi::c_void;
 use std::path::{Path, absolute};
 use std::ptr::NonNull;
@@ -38,7 +39,8 @@ impl Other {
         // A bare file name would be looked for where the system has its libraries.
         let path = absolute(path)?;
         // SAFETY: the user vouches for the file: it is one that was made of other.cpp.
-        let library = unsafe { Library::new(&path) }.map_err(|e| format!("cannot load {}: {e}", path.display()))?;
+        let library =
+            unsafe { Library::new(&path) }.map_err(|e| format!("cannot load {}: {}", path.display(), reason(&e)))?;
         // SAFETY: the same; each field has the type of the function of that name in other.cpp.
         let functions = unsafe {
             Functions {
@@ -64,7 +66,12 @@ impl Other {
 unsafe fn function<F: Copy>(library: &Library, name: &str) -> Result<F> {
     // SAFETY: the caller's contract.
     let symbol = unsafe { library.get::<F>(name) };
-    Ok(*symbol.map_err(|e| format!("was it made of other.cpp? {e}"))?)
+    Ok(*symbol.map_err(|e| format!("was it made of other.cpp? {}", reason(&e)))?)
+}
+
+/// What the system said; the error alone names only the call that failed.
+fn reason(error: &libloading::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), |said| said.to_string())
 }
 
 impl Drop for Other {
@@ -147,6 +154,7 @@ mod tests {
 
     #[test]
     fn what_is_no_such_library_is_refused() {
-        assert!(Other::load(Path::new("/nowhere/other.so"), 3).is_err());
+        let error = Other::load(Path::new("/nowhere/other.so"), 3).err().unwrap().to_string();
+        assert!(error.contains("No such file"), "{error}");
     }
 }
