@@ -1,0 +1,64 @@
+//! A mesh of triangles: everything that is drawn here is a sheet, put somewhere.
+
+use glam::Vec3;
+
+/// Vertices and indices, of which every one names a vertex: drawing relies on it, so nobody else may change them.
+pub struct Mesh {
+    vertices: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+}
+
+impl Mesh {
+    /// `columns` by `rows` quads of two triangles each. `place` gets two numbers from 0 to 1, across and up, and has
+    /// to keep right on the right as seen from the front. Rows are drawn from the lowest one.
+    pub fn sheet(columns: u32, rows: u32, place: impl Fn(f32, f32) -> Vec3) -> Self {
+        let mut vertices = Vec::with_capacity((columns as usize + 1) * (rows as usize + 1));
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let p = place(column as f32 / columns as f32, row as f32 / rows as f32);
+                // x, y, nothing, z: with 16 bytes a vertex and the third coordinate at byte 12, as the default layout
+                // of the class has it, libraries that have a fast way to read vertices take it.
+                vertices.push([p.x, p.y, 0.0, p.z]);
+            }
+        }
+        let mut indices = Vec::with_capacity(6 * columns as usize * rows as usize);
+        for row in 0..rows {
+            for column in 0..columns {
+                let low = row * (columns + 1) + column;
+                let high = low + columns + 1;
+                indices.extend([low, low + 1, high + 1, low, high + 1, high]);
+            }
+        }
+        Self { vertices, indices }
+    }
+
+    /// x, y, nothing, z of each vertex.
+    pub fn vertices(&self) -> &[[f32; 4]] {
+        &self.vertices
+    }
+
+    /// Three a triangle, counter-clockwise as seen from the front.
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    pub fn triangles(&self) -> usize {
+        self.indices.len() / 3
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_faces_the_front_and_its_indices_are_sound() {
+        let mesh = Mesh::sheet(5, 3, |x, y| Vec3::new(x, y, 0.0));
+        assert_eq!((mesh.triangles(), mesh.vertices().len()), (30, 24));
+        assert!(mesh.indices().iter().all(|i| (*i as usize) < mesh.vertices().len()));
+        for triangle in mesh.indices().as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|i| Vec3::from_slice(&mesh.vertices()[i as usize]).truncate());
+            assert!((b - a).perp_dot(c - a) > 0.0);
+        }
+    }
+}
