@@ -1,19 +1,19 @@
 //! Indices to survivors: most triangles end here, a vector of them at a time.
 //!
-//! A mesh is taken in chunks whose vertices fit in the scratch, each projected once. Where a chunk's indices are
-//! strewn too widely for that, its corners are projected one triangle at a time.
+//! A mesh is taken in chunks whose vertices are in the scratch (see `chunk.rs`).
 
 use super::batch::Batch;
+use super::chunk::{self, Numbering};
 use super::clip::{self, Clipped};
 use super::last_step::{All, LastStep, take_survivors};
 use super::project::{Camera, Reader, SHIFT, bit_where, outcode, project};
-use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, MAX_LANES, Scratch};
+use super::scratch::{MAX_LANES, Scratch};
 use super::setup::{Purpose, Setup};
 use super::survivors::{Corner, ROOM, Survivors};
 use super::{Facing, Mesh};
 use crate::CullingResult;
 use crate::buffer::Buffer;
-use crate::simd::{Job, Simd};
+use crate::simd::Simd;
 use crate::statistics::Tally;
 
 /// Farther than this outside of the screen, in 1/256 pixel, a snapped vertex is outside for certain.
@@ -23,46 +23,6 @@ const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
 
 /// With more survivors than this there may be no room for those of another vector of triangles.
 const FULL: usize = ROOM - MAX_LANES * clip::MAX_TRIANGLES;
-
-/// The least and the largest of some indices, of which there is at least one.
-pub(super) struct IndexRange<'a>(pub &'a [u32]);
-
-impl Job for IndexRange<'_> {
-    type Output = (u32, u32);
-
-    #[inline(always)]
-    fn run<S: Simd>(self, s: S) -> (u32, u32) {
-        index_range(s, self.0)
-    }
-}
-
-#[inline(always)]
-fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
-    // The least is the complement of the largest complement.
-    let (mut low, mut high) = (s.i(0), s.i(0));
-    let mut done = 0;
-    while done < indices.len() {
-        let left = indices.len() - done;
-        // SAFETY: no more is read than is left.
-        let index = unsafe {
-            let p = indices.as_ptr().add(done);
-            if left >= S::LANES { s.load_i(p) } else { s.select_i(s.first(left), s.load_some(p, left), s.i(*p as i32)) }
-        };
-        low = s.max_u(low, s.and_not(index, s.i(-1)));
-        high = s.max_u(high, index);
-        done += S::LANES;
-    }
-    (!s.largest_u(low), s.largest_u(high))
-}
-
-/// Where the corners of a chunk's triangles are in the scratch.
-#[derive(Clone, Copy)]
-enum Numbering {
-    /// Vertex `base` is the first.
-    From(u32),
-    /// Three for each triangle, in order, from triangle `first` of the mesh on.
-    InOrder { first: usize },
-}
 
 /// Draws, tests or bins a mesh, by its last step.
 #[inline(always)]
@@ -90,7 +50,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     while position < triangles && !unprojectable {
         if position == chunk_end {
             // SAFETY: the pipeline's caller vouches for the vertices.
-            (chunk_end, numbering) = unsafe { project_chunk(s, camera, &reader, mesh.triangles, position, scratch) };
+            (chunk_end, numbering) = unsafe { chunk::project(s, camera, &reader, mesh.triangles, position, scratch) };
         }
         let count = S::LANES.min(chunk_end - position);
         // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
@@ -147,40 +107,6 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
         (true, _) => CullingResult::Visible,
     };
     (result, tally)
-}
-
-/// Projects the vertices of the next chunk, and says where it ends and how its corners are numbered.
-///
-/// # Safety
-/// The vertices can be read; `position` is below the number of triangles.
-#[inline(always)]
-unsafe fn project_chunk<S: Simd>(
-    s: S,
-    camera: &Camera,
-    reader: &Reader<S>,
-    indices: &[u32],
-    position: usize,
-    scratch: &mut Scratch,
-) -> (usize, Numbering) {
-    let left = indices.len() / 3 - position;
-    let mut count = left.min(CHUNK_TRIANGLES);
-    loop {
-        let chunk = &indices[3 * position..3 * (position + count)];
-        let (least, largest) = index_range(s, chunk);
-        let vertices = (largest - least) as usize + 1;
-        // Strewn vertices are cheaper one triangle at a time once most of those between would be for nothing.
-        if vertices <= CHUNK_VERTICES.min(3 * count + MAX_LANES) {
-            // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
-            unsafe { reader.dense(camera, least, vertices, scratch) };
-            return (position + count, Numbering::From(least));
-        }
-        if count <= CHUNK_VERTICES / 3 {
-            // SAFETY: the caller's contract.
-            unsafe { reader.sparse(camera, chunk, scratch) };
-            return (position + count, Numbering::InOrder { first: position });
-        }
-        count = (count / 2).min(CHUNK_VERTICES / 3);
-    }
 }
 
 /// The corners of one triangle in clip space, and on the screen as the vectors have them.
@@ -241,31 +167,29 @@ impl<S: Simd> Group<S> {
         scratch: &Scratch,
     ) -> Self {
         let mut padded = core::mem::MaybeUninit::<[u32; 3 * MAX_LANES]>::uninit();
-        let (vertices, indices) = match numbering {
-            Numbering::From(base) => {
-                let group = &indices[3 * position..3 * (position + count)];
-                let indices = if count == S::LANES {
-                    group.as_ptr()
-                } else {
-                    for k in 0..3 {
-                        let at = k * S::LANES;
-                        let n = group.len().saturating_sub(at);
-                        // SAFETY: no more is read than is there; the array holds three vectors.
-                        unsafe {
-                            let some = s.load_some(group.as_ptr().wrapping_add(at), n);
-                            let index = s.select_i(s.first(n), some, s.i(base as i32));
-                            s.store_i(padded.as_mut_ptr().cast::<u32>().add(at), index);
-                        }
-                    }
-                    padded.as_ptr().cast()
-                };
-                (scratch.from_base(base), indices)
+        let (vertices, group) = match numbering {
+            Numbering::From(base) => (scratch.vertex_zero(base), &indices[3 * position..3 * (position + count)]),
+            Numbering::Local { first } => {
+                // SAFETY: the corners of a chunk that is numbered so were written.
+                let local = unsafe { scratch.local(3 * (position - first + count)) };
+                (scratch.vertex_zero(0), &local[3 * (position - first)..])
             }
-            Numbering::InOrder { first } => {
-                // Lanes beyond the last are of no account, but have to be in the scratch.
-                let index = |k: usize| (k % (3 * count)) as u32 + 3 * (position - first) as u32;
-                (scratch.from_base(0), padded.write(core::array::from_fn(index)).as_ptr())
+        };
+        let indices = if count == S::LANES {
+            group.as_ptr()
+        } else {
+            // Lanes beyond the last are of no account, but have to be in the scratch.
+            for k in 0..3 {
+                let at = k * S::LANES;
+                let n = group.len().saturating_sub(at);
+                // SAFETY: no more is read than is there; the array holds three vectors.
+                unsafe {
+                    let some = s.load_some(group.as_ptr().wrapping_add(at), n);
+                    let index = s.select_i(s.first(n), some, s.i(group[0] as i32));
+                    s.store_i(padded.as_mut_ptr().cast::<u32>().add(at), index);
+                }
             }
+            padded.as_ptr().cast()
         };
         let (second, third) = if facing.swap { (2, 1) } else { (1, 2) };
         // SAFETY: the caller's contract: numbers of projected vertices, three a lane.

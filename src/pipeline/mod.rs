@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! vertices ──> project    transform, project, snap, mark: once a vertex, a chunk at a time
+//!              chunk      which vertices, in what order; pages where they lie far apart
 //! indices  ──> cull       reject what faces away, lies outside or holds no pixel centre; compact the rest
 //!              clip       the few that cross the near plane or leave the guard band, back into the stream in order
 //!          ──> setup      edges and depth plane, full vectors of survivors
@@ -16,11 +17,13 @@
 //! instruction set, sub-tile by sub-tile; how many triangles are set up together changes nothing.
 
 mod batch;
+mod chunk;
 mod clip;
 mod cull;
 mod edges;
 mod last_step;
 mod list;
+mod pages;
 mod project;
 mod scratch;
 mod setup;
@@ -117,7 +120,8 @@ pub(crate) unsafe fn draw_list(
     scissor: TileRect,
 ) -> Tally {
     // A vector of sixteen lanes takes two tiles, one below the other, and may not take one that is outside.
-    let whole_blocks = scissor.y0 % 2 == 0 && (scissor.y1 % 2 == 0 || scissor.y1 == buffer.all_tiles().y1);
+    let whole_blocks =
+        scissor.y0.is_multiple_of(2) && (scissor.y1.is_multiple_of(2) || scissor.y1 == buffer.all_tiles().y1);
     let implementation = match implementation {
         Implementation::Avx512 if !whole_blocks => Implementation::Avx2,
         other => other,
@@ -127,7 +131,7 @@ pub(crate) unsafe fn draw_list(
 
 /// The largest of the indices.
 pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Option<u32> {
-    (!indices.is_empty()).then(|| simd::run(implementation, cull::IndexRange(indices)).1)
+    (!indices.is_empty()).then(|| simd::run(implementation, chunk::IndexRange(indices)).1)
 }
 
 macro_rules! mesh_job {

@@ -138,7 +138,7 @@ pub(super) fn bit_where<S: Simd>(s: S, m: S::M, bit: u32) -> S::I {
 
 /// How a call reads its vertices: layout and matrix, ready for vectors.
 pub(super) struct Reader<S: Simd> {
-    s: S,
+    pub s: S,
     source: VertexSource,
     packing: Packing,
     rows: Option<Rows<S>>,
@@ -314,6 +314,9 @@ impl<S: Simd> Reader<S> {
     /// They can be read; there are from 1 to a chunk's size of them.
     #[inline(always)]
     pub unsafe fn sparse(&self, camera: &Camera, indices: &[u32], scratch: &mut Scratch) {
+        for (k, local) in scratch.local[..indices.len()].iter_mut().enumerate() {
+            local.write(k as u32);
+        }
         let mut local = 0;
         while local < indices.len() {
             let group: [u32; super::scratch::MAX_LANES] =

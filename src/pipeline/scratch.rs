@@ -3,10 +3,12 @@
 
 use core::mem::MaybeUninit;
 
+use super::pages::PageTable;
+
 pub(super) use crate::simd::MAX_LANES;
 
 /// Vertices of a chunk.
-pub(super) const CHUNK_VERTICES: usize = 512;
+pub(super) const CHUNK_VERTICES: usize = 768;
 /// Triangles of a chunk.
 pub(super) const CHUNK_TRIANGLES: usize = 512;
 
@@ -15,7 +17,10 @@ pub(super) const CHUNK_TRIANGLES: usize = 512;
 /// tenth of a frame.
 #[repr(C, align(64))]
 pub(super) struct Scratch {
-    vertices: [MaybeUninit<[f32; 4]>; CHUNK_VERTICES + MAX_LANES],
+    vertices: [MaybeUninit<[f32; 4]>; CHUNK_VERTICES + 2 * MAX_LANES],
+    /// Where the corners of the chunk's triangles are, if not in the order of the mesh.
+    pub local: [MaybeUninit<u32>; 3 * CHUNK_TRIANGLES],
+    pub table: MaybeUninit<PageTable>,
 }
 
 impl Scratch {
@@ -24,11 +29,13 @@ impl Scratch {
         MaybeUninit::uninit()
     }
 
-    /// All of it is an array of `MaybeUninit`, so that it may be used as it comes.
+    /// All of it is `MaybeUninit`, so that it may be used as it comes.
     #[inline(always)]
     pub fn of(memory: &mut MaybeUninit<Self>) -> &mut Self {
-        // SAFETY: every field is an array of `MaybeUninit`, which needs no initialisation.
-        unsafe { memory.assume_init_mut() }
+        // SAFETY: every field is `MaybeUninit` or an array of it, which needs no initialisation.
+        let scratch = unsafe { memory.assume_init_mut() };
+        PageTable::clear(&mut scratch.table);
+        scratch
     }
 
     /// The address of vertex `local`'s x, which may be any number.
@@ -37,9 +44,20 @@ impl Scratch {
         self.vertices.as_mut_ptr().wrapping_add(local).cast()
     }
 
+    /// The first `n` of the corners' local numbers.
+    ///
+    /// # Safety
+    /// They were written.
+    #[inline(always)]
+    pub unsafe fn local(&self, n: usize) -> &[u32] {
+        let local = &self.local[..n];
+        // SAFETY: the caller's contract.
+        unsafe { core::slice::from_raw_parts(local.as_ptr().cast(), n) }
+    }
+
     /// The address that vertex 0 of the mesh would have if vertex `base` is the first here.
     #[inline(always)]
-    pub fn from_base(&self, base: u32) -> *const f32 {
+    pub fn vertex_zero(&self, base: u32) -> *const f32 {
         self.vertices.as_ptr().wrapping_sub(base as usize).cast()
     }
 }

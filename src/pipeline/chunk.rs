@@ -1,0 +1,93 @@
+//! Chunks: as many triangles as have their vertices in the scratch at a time, each vertex projected once.
+//!
+//! Most meshes name vertices that lie close together, and all from the least to the largest of a chunk are projected.
+//! Where they lie in several places (two rows of a wide grid, say), only the pages of sixteen that are named
+//! are. Where they are strewn more widely than that, corners are projected one triangle at a time.
+
+use super::project::{Camera, Reader};
+use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, MAX_LANES, Scratch};
+use crate::simd::{Job, Simd};
+
+/// The least and the largest of some indices, of which there is at least one.
+pub(super) struct IndexRange<'a>(pub &'a [u32]);
+
+impl Job for IndexRange<'_> {
+    type Output = (u32, u32);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> (u32, u32) {
+        index_range(s, self.0)
+    }
+}
+
+#[inline(always)]
+fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
+    // The least is the complement of the largest complement.
+    let (mut low, mut high) = (s.i(0), s.i(0));
+    let mut done = 0;
+    while done < indices.len() {
+        let left = indices.len() - done;
+        // SAFETY: no more is read than is left.
+        let index = unsafe {
+            let p = indices.as_ptr().add(done);
+            if left >= S::LANES { s.load_i(p) } else { s.select_i(s.first(left), s.load_some(p, left), s.i(*p as i32)) }
+        };
+        low = s.max_u(low, s.and_not(index, s.i(-1)));
+        high = s.max_u(high, index);
+        done += S::LANES;
+    }
+    (!s.largest_u(low), s.largest_u(high))
+}
+
+/// How the corners of a chunk's triangles name vertices in the scratch.
+#[derive(Clone, Copy)]
+pub(super) enum Numbering {
+    /// As the mesh does, and vertex `base` is the first.
+    From(u32),
+    /// By the scratch's local numbers, from triangle `first` of the mesh on.
+    Local { first: usize },
+}
+
+/// Projects the vertices of the next chunk, and says where it ends and how its corners are numbered.
+///
+/// # Safety
+/// The vertices can be read; `position` is below the number of triangles.
+#[inline(always)]
+pub(super) unsafe fn project<S: Simd>(
+    s: S,
+    camera: &Camera,
+    reader: &Reader<S>,
+    indices: &[u32],
+    position: usize,
+    scratch: &mut Scratch,
+) -> (usize, Numbering) {
+    let mut count = (indices.len() / 3 - position).min(CHUNK_TRIANGLES);
+    let mut chunk = &indices[3 * position..3 * (position + count)];
+    let (mut least, mut largest) = index_range(s, chunk);
+    // Dense enough that most of those between are not for nothing.
+    let dense = |least: u32, largest: u32, count: usize| ((largest - least) as usize) < 3 * count + MAX_LANES;
+    if dense(least, largest, count) && (largest - least) as usize >= CHUNK_VERTICES {
+        // Triangles that share few vertices.
+        count = CHUNK_VERTICES / 3;
+        chunk = &chunk[..3 * count];
+        (least, largest) = index_range(s, chunk);
+    }
+    let vertices = (largest - least) as usize + 1;
+    if vertices <= CHUNK_VERTICES && dense(least, largest, count) {
+        // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
+        unsafe { reader.dense(camera, least, vertices, scratch) };
+        return (position + count, Numbering::From(least));
+    }
+    // SAFETY: the caller's contract.
+    let count = unsafe {
+        match reader.paged(camera, chunk, (least, largest), scratch) {
+            Some(count) => count,
+            None => {
+                let count = count.min(CHUNK_VERTICES / 3);
+                reader.sparse(camera, &chunk[..3 * count], scratch);
+                count
+            }
+        }
+    };
+    (position + count, Numbering::Local { first: position })
+}

@@ -1,0 +1,126 @@
+//! Vertices page by page: of a chunk whose indices lie in several places, the pages of sixteen vertices that it names.
+//!
+//! A table says for each page where in the scratch it is; the corners of the chunk are renumbered on the way.
+
+use super::project::{Camera, Reader, project};
+use super::scratch::{CHUNK_VERTICES, MAX_LANES, Scratch};
+use crate::simd::Simd;
+
+/// Vertices of a page, as many as the widest vector has lanes.
+const PAGE: usize = MAX_LANES;
+const SHIFT: u32 = PAGE.trailing_zeros();
+/// Pages that the scratch holds; the first vertices of the scratch are room for the last page of a mesh, see below.
+const SLOTS: usize = CHUNK_VERTICES / PAGE;
+/// Pages between the least and the largest index of a chunk.
+const PAGES: usize = 2048;
+/// With fewer triangles a page the vertices are better projected one by one.
+const TRIANGLES_PER_PAGE: usize = 4;
+const NONE: u16 = u16::MAX;
+
+/// Where each page is in the scratch. Between chunks all are nowhere.
+pub(super) struct PageTable {
+    slots: [u16; PAGES],
+    ready: bool,
+}
+
+impl PageTable {
+    /// Nothing but the flag has to be written before it is used.
+    #[inline(always)]
+    pub fn clear(table: &mut core::mem::MaybeUninit<Self>) {
+        // SAFETY: it is written, not read.
+        unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
+    }
+
+    /// Every page nowhere, if they are not yet.
+    fn of(table: &mut core::mem::MaybeUninit<Self>) -> &mut [u16; PAGES] {
+        // SAFETY: the flag was written by `clear`, and the slots are before they are used.
+        unsafe {
+            let table = table.as_mut_ptr();
+            let slots = &raw mut (*table).slots;
+            if !(*table).ready {
+                slots.write([NONE; PAGES]);
+                (*table).ready = true;
+            }
+            &mut *slots
+        }
+    }
+}
+
+/// Pages that a chunk names, in the order of their slots.
+struct Named {
+    pages: [u16; SLOTS],
+    count: usize,
+}
+
+/// Renumbers the corners of as many triangles as there is room for, from 1 up, and lists their pages, that of the
+/// largest index first. Nothing: too far apart, or too few triangles.
+fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) -> Option<(usize, Named)> {
+    let page_of = |index: u32| ((index - least) >> SHIFT) as usize;
+    if page_of(largest) >= PAGES {
+        return None;
+    }
+    let (table, local) = (PageTable::of(&mut scratch.table), &mut scratch.local);
+    let mut named = Named { pages: [0; SLOTS], count: 1 };
+    named.pages[0] = page_of(largest) as u16;
+    table[page_of(largest)] = 0;
+    let mut triangles = 0;
+    for (corners, local) in indices.chunks_exact(3).zip(local.chunks_exact_mut(3)) {
+        if named.count + 3 > SLOTS {
+            break;
+        }
+        for (&index, local) in corners.iter().zip(local) {
+            let slot = &mut table[page_of(index)];
+            if *slot == NONE {
+                *slot = named.count as u16;
+                named.pages[named.count] = page_of(index) as u16;
+                named.count += 1;
+            }
+            // One page of room before the first slot.
+            local.write(((u32::from(*slot) + 1) << SHIFT) + ((index - least) & (PAGE as u32 - 1)));
+        }
+        triangles += 1;
+    }
+    for &page in &named.pages[..named.count] {
+        table[usize::from(page)] = NONE;
+    }
+    (triangles >= TRIANGLES_PER_PAGE * named.count).then_some((triangles, named))
+}
+
+impl<S: Simd> Reader<S> {
+    /// Projects the pages that the first triangles name, whose number it returns, and renumbers their corners; if that
+    /// pays.
+    ///
+    /// # Safety
+    /// The vertices from the least to the largest index, of which there are more than a page, can be read.
+    #[inline(always)]
+    pub unsafe fn paged(
+        &self,
+        camera: &Camera,
+        indices: &[u32],
+        (least, largest): (u32, u32),
+        scratch: &mut Scratch,
+    ) -> Option<usize> {
+        if ((largest - least) as usize) < PAGE {
+            return None;
+        }
+        let (triangles, named) = renumber(indices, least, largest, scratch)?;
+        for slot in 0..named.count {
+            let first = least + (u32::from(named.pages[slot]) << SHIFT);
+            // The page of the largest index may reach beyond it: it is projected from further down, and what comes
+            // before it goes to the room before its slot, which is the first.
+            let early = if slot == 0 { (first + PAGE as u32 - 1).saturating_sub(largest) } else { 0 };
+            let to = (slot + 1) * PAGE - early as usize;
+            let mut at = 0;
+            while at < PAGE {
+                // SAFETY: the caller's contract; a vertex follows every page but the first named.
+                unsafe {
+                    let whole = slot != 0 || at + S::LANES < PAGE;
+                    let v = project(self.s, camera, self.load(first - early + at as u32, whole));
+                    self.s.store_records(scratch.vertex(to + at), v);
+                }
+                at += S::LANES;
+            }
+        }
+        Some(triangles)
+    }
+}
