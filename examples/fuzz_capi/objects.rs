@@ -65,6 +65,7 @@ impl Driver<'_> {
             update_rule: hostile::enumeration(rng, &[0, 1, 2, 3, -1]),
             y_axis: hostile::enumeration(rng, &[0, 1, 2]),
             precise_coverage: hostile::enumeration(rng, &[0, 1, 2]),
+            statistics: hostile::enumeration(rng, &[0, 1, 2]),
             alloc: Some(memory::alloc),
             free: Some(memory::free),
         };
@@ -76,7 +77,8 @@ impl Driver<'_> {
         let enums = [-1, 0, 1, 2, 3, 16].contains(&settings.implementation)
             && (0..=2).contains(&settings.update_rule)
             && (0..=1).contains(&settings.y_axis)
-            && (0..=1).contains(&settings.precise_coverage);
+            && (0..=1).contains(&settings.precise_coverage)
+            && (0..=1).contains(&settings.statistics);
         let pair = settings.alloc.is_some() == settings.free.is_some();
         let mode = [Mode::Works, Mode::Fails][rng.usize(..2)];
         memory::set_mode(mode);
