@@ -236,7 +236,7 @@ pub(super) struct Query<'a, T> {
     t: T,
     buffer: &'a Buffer,
     lists: MaybeUninit<Lists>,
-    /// Some triangle's box is on the screen.
+    /// Some triangle touched a pixel, or was hidden before setup, which says that it is on the screen.
     found: bool,
 }
 
@@ -256,12 +256,18 @@ impl<T: Simd> LastStep for Query<'_, T> {
         let &mut Self { t, buffer, ref mut lists, .. } = self;
         let clip = buffer.all_tiles();
         let way = Way { buffer, clip, batch, alive, lists };
-        let stopped = match buffer.rule() {
-            UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) }).0,
-            UpdateRule::Quick => t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) }).0,
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) }).0,
+        let (stopped, touches) = match buffer.rule() {
+            UpdateRule::ThreeLayer => compared(t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) })),
+            UpdateRule::Quick => compared(t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) })),
+            UpdateRule::Accurate => compared(t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) })),
         };
-        self.found |= alive.rasterized != 0;
+        self.found |= touches || alive.rasterized != alive.lanes;
+        if !self.found && stopped.is_none() {
+            // Whole tiles hid all of it, or it passes by: the first pixel touched tells. Which tiles are looked at
+            // together depends on the instruction set, so that being hidden does not.
+            let way = Way { buffer, clip, batch, alive, lists };
+            self.found = t.apart(Traverse { way, step: Touch }).0.is_some();
+        }
         // Triangles after the first that may be seen do not count, however many a vector has.
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
@@ -279,15 +285,51 @@ impl<T: Simd> LastStep for Query<'_, T> {
     }
 }
 
+#[inline(always)]
+fn compared<R>((stopped, step): (Option<u32>, Compare<'_, R>)) -> (Option<u32>, bool) {
+    (stopped, step.touches)
+}
+
+/// Stops at the first tile of which a pixel is touched.
+struct Touch;
+
+impl<T: Simd> TileStep<T> for Touch {
+    const PLANES: usize = 0;
+    const DRAWS: bool = false;
+
+    #[inline(always)]
+    fn open(t: T, least: T::F, _: T::F) -> T::M {
+        t.eq(least, least)
+    }
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, _: TilePlace, covered: T::I, _: T::F) -> bool {
+        nothing(t, covered)
+    }
+
+    #[inline(always)]
+    unsafe fn whole_tile(&mut self, _: T, _: TilePlace, _: T::F) -> bool {
+        false
+    }
+}
+
+/// Is no pixel covered?
+#[inline(always)]
+fn nothing<T: Simd>(t: T, covered: T::I) -> bool {
+    t.mask_bits(t.eq_i(covered, t.i(0))) == ((1_u64 << T::LANES) - 1) as u32
+}
+
 struct Compare<'a, R> {
     buffer: &'a Buffer,
+    /// Some pixel was touched.
+    touches: bool,
     rule: PhantomData<R>,
 }
 
 impl<'a, R> Compare<'a, R> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, rule: PhantomData }
+        Self { buffer, touches: false, rule: PhantomData }
     }
 }
 
@@ -302,6 +344,7 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
 
     #[inline(always)]
     unsafe fn tile(&mut self, t: T, at: TilePlace, covered: T::I, depth: T::F) -> bool {
+        self.touches |= !nothing(t, covered);
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at), covered, depth) };
         t.mask_bits(hidden) == ((1_u64 << T::LANES) - 1) as u32
