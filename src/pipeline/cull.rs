@@ -45,6 +45,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);
+    let mut direct = None;
     let (mut position, mut chunk_end, mut numbering) = (0, 0, Numbering::From(0));
 
     while position < triangles && !unprojectable {
@@ -59,7 +60,9 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
         in_view |= sieve.in_view;
         let kept = s.mask_bits(sieve.kept);
         if sieve.irregular == 0 {
-            if kept != 0 {
+            if kept != 0 && triangles <= S::LANES {
+                direct = Some((group.corners, sieve.kept));
+            } else if kept != 0 {
                 // SAFETY: below `FULL` there is room.
                 unsafe { survivors.append(s, sieve.kept, &group.corners) };
             }
@@ -93,12 +96,12 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
             }
         }
         position += count;
-        if survivors.len() > FULL && !take_survivors(setup, survivors, All::No, &mut batch, last, &mut tally) {
+        if survivors.len() > FULL && !take_survivors(setup, survivors, None, All::No, &mut batch, last, &mut tally) {
             return (CullingResult::Visible, tally);
         }
     }
     // What comes before what cannot be projected is compared first, so that the counts do not depend on the lanes.
-    if !take_survivors(setup, survivors, All::Yes, &mut batch, last, &mut tally) || unprojectable {
+    if !take_survivors(setup, survivors, direct, All::Yes, &mut batch, last, &mut tally) || unprojectable {
         return (CullingResult::Visible, tally);
     }
     let result = match (in_view && last.found(), L::PURPOSE) {

@@ -7,7 +7,7 @@ use super::batch::Batch;
 use super::edges::bits;
 use super::setup::{Alive, Purpose, Setup, set_up};
 use super::strips::MAX_TILES;
-use super::survivors::Survivors;
+use super::survivors::{Corner, Survivors};
 use super::traverse::{Lists, TileStep, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
@@ -39,24 +39,35 @@ pub(super) enum All {
 }
 
 /// Sets up survivors, vector by vector, and takes them to the last step. False: no more are needed.
+///
+/// `direct`: the only triangles of a small call, which need not wait until they are written and read.
 #[inline(always)]
 pub(super) fn take_survivors<S: Simd, L: LastStep>(
     setup: Setup<'_, S>,
     survivors: &mut Survivors,
+    direct: Option<([Corner<S>; 3], S::M)>,
     all: All,
     batch: &mut Batch,
     last: &mut L,
     tally: &mut Tally,
 ) -> bool {
     let end = if all == All::Yes { survivors.len() } else { survivors.len() / S::LANES * S::LANES };
+    let mut direct = direct;
     let mut done = 0;
-    while done < end {
-        let n = S::LANES.min(end - done);
-        let alive = set_up(setup, survivors.vector(setup.s, done), n, batch);
+    loop {
+        let (corners, active) = match direct.take() {
+            Some(vector) => vector,
+            None if done < end => {
+                let vector = (survivors.vector(setup.s, done), setup.s.first(end - done));
+                done += S::LANES.min(end - done);
+                vector
+            }
+            None => break,
+        };
+        let alive = set_up(setup, corners, active, batch);
         if alive.rasterized != 0 && !last.take(batch, &alive, tally) {
             return false;
         }
-        done += n;
     }
     survivors.forget(setup.s, end);
     true

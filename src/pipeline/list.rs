@@ -24,7 +24,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'
         let end = list.len().min(position + ROOM);
         fetch(list, position..end, survivors, &mut tally);
         position = end;
-        if !take_survivors(setup, survivors, All::Yes, &mut batch, last, &mut tally) {
+        if !take_survivors(setup, survivors, None, All::Yes, &mut batch, last, &mut tally) {
             break;
         }
     }

@@ -66,13 +66,16 @@ pub(super) struct Setup<'a, S> {
     pub shared: bool,
 }
 
-/// Sets up the first `n` of a vector of triangles; the others are regular, too, or all zeros.
+/// Sets up the triangles in `active`; the others may be anything.
 #[inline(always)]
-pub(super) fn set_up<S: Simd>(setup: Setup<'_, S>, [a, b, c]: [Corner<S>; 3], n: usize, batch: &mut Batch) -> Alive {
+pub(super) fn set_up<S: Simd>(
+    setup: Setup<'_, S>,
+    [a, b, c]: [Corner<S>; 3],
+    active: S::M,
+    batch: &mut Batch,
+) -> Alive {
     let Setup { s, purpose, buffer, both_sides, shared } = setup;
     let query = purpose == Purpose::Query;
-    let active = s.first(n);
-
     // The topmost corner first.
     let b_top = s.and_m(s.lt(b[1], a[1]), s.le(b[1], c[1]));
     let c_top = s.and_m(s.lt(c[1], a[1]), s.lt(c[1], b[1]));
