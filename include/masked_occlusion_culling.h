@@ -473,7 +473,8 @@ typedef struct MOC_OccludeeStatistics {
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object. Gathered always; the same on every instruction set.
+ * All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
+ * instruction set.
  */
 typedef struct MOC_Statistics {
     /**

@@ -19,7 +19,16 @@ pub fn transform_vertices(matrix: &Mat4, vertices: Vertices<'_>, out: &mut [[f32
 /// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
 pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
     let best = *Implementation::available().last().unwrap_or(&Implementation::Scalar);
-    simd::run(best, Transform { matrix, source, out, count });
+    // In parts whose vertices have numbers of 32 bits, as those that a mesh names.
+    const PART: usize = 1 << 30;
+    let mut done = 0;
+    while done < count {
+        let part = PART.min(count - done);
+        let base = source.base.wrapping_add(done * source.layout.stride as usize);
+        let source = VertexSource { base, ..source };
+        simd::run(best, Transform { matrix, source, out: out.wrapping_add(4 * done), count: part });
+        done += part;
+    }
 }
 
 struct Transform<'a> {

@@ -194,7 +194,8 @@ pub struct MOC_OccludeeStatistics {
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object. Gathered always; the same on every instruction set.
+/// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
+/// instruction set.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_Statistics {

@@ -86,6 +86,12 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
     (triangles >= TRIANGLES_PER_PAGE * named.count).then_some((triangles, named))
 }
 
+/// How many vertices the page that begins with `first` has beyond `largest`, which is on it.
+fn beyond(first: u32, largest: u32) -> u32 {
+    // Not `first + PAGE`, which the largest of all indices overflow.
+    PAGE as u32 - 1 - (largest - first)
+}
+
 impl<S: Simd> Reader<S> {
     /// Projects the pages that the first triangles name, whose number it returns, and renumbers their corners; if that
     /// pays.
@@ -108,7 +114,7 @@ impl<S: Simd> Reader<S> {
             let first = least + (u32::from(named.pages[slot]) << SHIFT);
             // The page of the largest index may reach beyond it: it is projected from further down, and what comes
             // before it goes to the room before its slot, which is the first.
-            let early = if slot == 0 { (first + PAGE as u32 - 1).saturating_sub(largest) } else { 0 };
+            let early = if slot == 0 { beyond(first, largest) } else { 0 };
             let to = (slot + 1) * PAGE - early as usize;
             let mut at = 0;
             while at < PAGE {
@@ -122,5 +128,19 @@ impl<S: Simd> Reader<S> {
             }
         }
         Some(triangles)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_page_ends_with_the_largest_index() {
+        for (first, largest, expected) in
+            [(0, 15, 0), (32, 32, 15), (u32::MAX - 15, u32::MAX, 0), (u32::MAX - 3, u32::MAX, 12)]
+        {
+            assert_eq!(beyond(first, largest), expected, "{first} {largest}");
+        }
     }
 }

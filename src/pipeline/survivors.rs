@@ -94,8 +94,11 @@ impl Survivors {
             return;
         }
         for lanes in &mut self.lanes {
-            // SAFETY: there is room for a vector after the last triangle.
-            unsafe { s.store_f(lanes.as_mut_ptr().cast(), s.load_f(lanes.as_ptr().add(n).cast())) };
+            // SAFETY: there is room for a vector after the last triangle; what comes there is written first.
+            unsafe {
+                s.store_f(lanes.as_mut_ptr().add(self.len).cast(), s.f(0.0));
+                s.store_f(lanes.as_mut_ptr().cast(), s.load_f(lanes.as_ptr().add(n).cast()));
+            }
         }
         self.len -= n;
     }

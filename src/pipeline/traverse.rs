@@ -106,8 +106,9 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let common = strips.common(strip);
             // SAFETY: strips with open tiles were written above; vectors of as many words as there are lanes.
             let (left, right, z) = unsafe {
-                let rows = rows.get_unchecked(strip).assume_init_ref();
-                (t.load_i(rows.left.as_ptr()), t.load_i(rows.right.as_ptr()), t.load_f(rows.z.as_ptr()))
+                let rows = rows.get_unchecked(strip).as_ptr();
+                let (left, right) = (&raw const (*rows).left, &raw const (*rows).right);
+                (t.load_i(left.cast()), t.load_i(right.cast()), t.load_f((&raw const (*rows).z).cast()))
             };
             let column = t.or(t.i((4 * x).wrapping_sub(common.sub_column) as i32), t.and(t.iota(), t.i(3)));
             let plane = t.add(z, t.mul(t.f(common.across), t.to_f(column)));
