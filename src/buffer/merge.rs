@@ -57,7 +57,13 @@ impl Merge<'_> {
                     }
                     let at = TilePlace::new(into, x, y);
                     let mut planes = load::<T, R>(s, into, at);
-                    let layers = O::layers(s, &load::<T, O>(s, from, TilePlace::new(from, x, y)));
+                    let theirs = load::<T, O>(s, from, TilePlace::new(from, x, y));
+                    // Depths behind the reference change nothing.
+                    let nearest = s.max_positive(theirs.z0, theirs.z_near);
+                    if s.mask_bits(s.le(nearest, planes.z0)) == ((1_u64 << T::LANES) - 1) as u32 {
+                        continue;
+                    }
+                    let layers = O::layers(s, &theirs);
                     for &(mask, z) in &layers[..O::LAYERS] {
                         R::insert(s, &mut planes, mask, z);
                     }
