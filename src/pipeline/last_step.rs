@@ -8,7 +8,8 @@ use super::edges::bits;
 use super::setup::{Alive, Purpose, Setup, set_up};
 use super::strips::MAX_TILES;
 use super::survivors::{Corner, Survivors};
-use super::traverse::{Lists, TileStep, Way, traverse};
+use super::tile_step::TileStep;
+use super::traverse::{Lists, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{

@@ -29,6 +29,7 @@ mod scratch;
 mod setup;
 mod strips;
 mod survivors;
+mod tile_step;
 mod traverse;
 
 use crate::bins::TriList;

@@ -8,7 +8,7 @@
 use core::mem::MaybeUninit;
 
 use super::batch::{Batch, Lanes};
-use super::traverse::TileStep;
+use super::tile_step::TileStep;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 

@@ -13,6 +13,7 @@ use core::mem::MaybeUninit;
 use super::batch::{Batch, Lanes};
 use super::setup::Alive;
 use super::strips::{self, Strips, height};
+use super::tile_step::TileStep;
 use crate::buffer::{BLOCK, Buffer, SUB_TILES, TILE_WIDTH, TilePlace, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 
@@ -28,34 +29,6 @@ struct Rows {
 
 /// Tiles are asked for so many before they are taken: 3 to 6 percent of a frame of two scenes, none of a third.
 const AHEAD: usize = 6;
-
-/// What happens in a tile.
-pub(super) trait TileStep<T: Simd> {
-    /// Planes of the buffer.
-    const PLANES: usize;
-    /// Is the bound of a draw clamped from below, rather than that of a query from above?
-    const DRAWS: bool;
-
-    /// Tiles of these least depths in which something at `nearest` matters.
-    fn open(t: T, least: T::F, nearest: T::F) -> T::M;
-
-    /// Takes the pixels `covered` at `depth` in a tile, and, with sixteen lanes, in the tile below. False: no
-    /// more are needed.
-    ///
-    /// # Safety
-    /// It is a tile of the buffer, and the caller of the pipeline allowed its use.
-    unsafe fn tile(&mut self, t: T, at: TilePlace, covered: T::I, depth: T::F) -> bool;
-
-    /// The same for all pixels of the tile or tiles.
-    ///
-    /// # Safety
-    /// As [`Self::tile`].
-    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool;
-
-    /// Comes after at most [`strips::MAX_TILES`] tiles.
-    #[inline(always)]
-    fn tiles_done(&mut self) {}
-}
 
 /// Room for the lists; not initialised.
 pub(super) struct Lists {
