@@ -3,7 +3,7 @@
 //! A table says for each page where in the scratch it is; the corners of the chunk are renumbered on the way.
 
 use super::project::{Camera, Reader, project};
-use super::scratch::{CHUNK_VERTICES, MAX_LANES, Scratch};
+use super::scratch::{CHUNK_VERTICES, MAX_LANES, NOWHERE, PAGES, PageTable, Scratch};
 use crate::simd::Simd;
 
 /// Vertices of a page, as many as the widest vector has lanes.
@@ -11,40 +11,8 @@ const PAGE: usize = MAX_LANES;
 const SHIFT: u32 = PAGE.trailing_zeros();
 /// Pages that the scratch holds; the first vertices of the scratch are room for the last page of a mesh, see below.
 const SLOTS: usize = CHUNK_VERTICES / PAGE;
-/// Pages between the least and the largest index of a chunk.
-const PAGES: usize = 2048;
 /// With fewer triangles a page the vertices are better projected one by one.
 const TRIANGLES_PER_PAGE: usize = 4;
-const NONE: u16 = u16::MAX;
-
-/// Where each page is in the scratch. Between chunks all are nowhere.
-pub(super) struct PageTable {
-    slots: [u16; PAGES],
-    ready: bool,
-}
-
-impl PageTable {
-    /// Nothing but the flag has to be written before it is used.
-    #[inline(always)]
-    pub fn clear(table: &mut core::mem::MaybeUninit<Self>) {
-        // SAFETY: it is written, not read.
-        unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
-    }
-
-    /// Every page nowhere, if they are not yet.
-    fn of(table: &mut core::mem::MaybeUninit<Self>) -> &mut [u16; PAGES] {
-        // SAFETY: the flag was written by `clear`, and the slots are before they are used.
-        unsafe {
-            let table = table.as_mut_ptr();
-            let slots = &raw mut (*table).slots;
-            if !(*table).ready {
-                slots.write([NONE; PAGES]);
-                (*table).ready = true;
-            }
-            &mut *slots
-        }
-    }
-}
 
 /// Pages that a chunk names, in the order of their slots.
 struct Named {
@@ -70,7 +38,7 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
         }
         for (&index, local) in corners.iter().zip(local) {
             let slot = &mut table[page_of(index)];
-            if *slot == NONE {
+            if *slot == NOWHERE {
                 *slot = named.count as u16;
                 named.pages[named.count] = page_of(index) as u16;
                 named.count += 1;
@@ -81,7 +49,7 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
         triangles += 1;
     }
     for &page in &named.pages[..named.count] {
-        table[usize::from(page)] = NONE;
+        table[usize::from(page)] = NOWHERE;
     }
     (triangles >= TRIANGLES_PER_PAGE * named.count).then_some((triangles, named))
 }

@@ -3,14 +3,46 @@
 
 use core::mem::MaybeUninit;
 
-use super::pages::PageTable;
-
 pub(super) use crate::simd::MAX_LANES;
 
 /// Vertices of a chunk.
 pub(super) const CHUNK_VERTICES: usize = 768;
 /// Triangles of a chunk.
 pub(super) const CHUNK_TRIANGLES: usize = 512;
+
+/// Pages of vertices between the least and the largest index of a chunk (see `pages.rs`).
+pub(super) const PAGES: usize = 2048;
+/// The slot of a page that is not in the scratch.
+pub(super) const NOWHERE: u16 = u16::MAX;
+
+/// Where each page is in the scratch. Between chunks all are nowhere.
+pub(super) struct PageTable {
+    slots: [u16; PAGES],
+    ready: bool,
+}
+
+impl PageTable {
+    /// Nothing but the flag has to be written before it is used.
+    #[inline(always)]
+    pub fn clear(table: &mut MaybeUninit<Self>) {
+        // SAFETY: it is written, not read.
+        unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
+    }
+
+    /// Every page nowhere, if they are not yet.
+    pub fn of(table: &mut MaybeUninit<Self>) -> &mut [u16; PAGES] {
+        // SAFETY: the flag was written by `clear`, and the slots are before they are used.
+        unsafe {
+            let table = table.as_mut_ptr();
+            let slots = &raw mut (*table).slots;
+            if !(*table).ready {
+                slots.write([NOWHERE; PAGES]);
+                (*table).ready = true;
+            }
+            &mut *slots
+        }
+    }
+}
 
 /// x and y of each vertex in 1/256 pixel, whole numbers, and 1/w; or, as a NaN for x, the marks of a vertex that has to
 /// be clipped. Four floats a vertex, so that a vector of corners is loaded without gathering, which was slower by a
