@@ -3,19 +3,13 @@
 
 #[path = "../benches/common/mod.rs"]
 mod common;
+#[path = "shared/options.rs"]
+mod options;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use common::{HEIGHT, ORDERS, RULES, WIDTH, views};
 use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Isa {
-    Scalar,
-    Sse2,
-    Sse41,
-    Avx2,
-    Avx512,
-}
+use options::{Isa, Rule};
 
 #[derive(Parser)]
 struct Args {
@@ -27,9 +21,9 @@ struct Args {
     /// The highest instruction set; the best of the machine otherwise.
     #[arg(long, default_value = "avx512")]
     isa: Isa,
-    /// three-layer, quick or accurate.
-    #[arg(long, default_value = "three-layer")]
-    rule: String,
+    /// How the buffer takes in triangles.
+    #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
+    rule: Rule,
     /// near or random.
     #[arg(long, default_value = "near")]
     order: String,
@@ -37,7 +31,8 @@ struct Args {
 
 fn main() -> Result<(), String> {
     let args = Args::parse();
-    let (_, update_rule) = RULES.into_iter().find(|r| r.0 == args.rule).ok_or("no such rule")?;
+    // The list is in the order of the numbers.
+    let (_, update_rule) = RULES[args.rule as usize];
     let (_, order) = ORDERS.into_iter().find(|o| o.0 == args.order).ok_or("no such order")?;
     let view = views(order).into_iter().find(|v| v.name == args.scene).ok_or("no such scene")?;
     let implementation = match args.isa {
@@ -46,6 +41,7 @@ fn main() -> Result<(), String> {
         Isa::Sse41 => Implementation::Sse41,
         Isa::Avx2 => Implementation::Avx2,
         Isa::Avx512 => Implementation::Avx512,
+        Isa::Neon => Implementation::Neon,
     };
     let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, ..Settings::default() });
     moc.set_resolution(WIDTH, HEIGHT).map_err(|e| e.to_string())?;

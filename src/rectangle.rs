@@ -150,7 +150,6 @@ impl<R: Rule> Walk<'_, R> {
         let (first, end) = (within(p.x0), within(p.x1 + 1));
         let end = s.select_i(inside, end, s.i(0));
         let touched = s.transpose_bytes(s.and_not(s.ones_shl(end), s.ones_shl(first)));
-        let hidden = s.mask_bits(R::hides(s, &planes, touched, s.f(self.depth)));
-        hidden != ((1_u64 << S::LANES) - 1) as u32
+        !s.all(R::hides(s, &planes, touched, s.f(self.depth)))
     }
 }

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use glam::Vec3;
+
+use crate::options::{Isa, Rule};
 
 /// Culls a scene with a C++ program that uses the library as an engine would, and draws what it found.
 #[derive(Debug, Parser)]
@@ -53,14 +55,6 @@ pub struct Args {
     pub out: PathBuf,
 }
 
-/// An update rule of the library.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Rule {
-    ThreeLayer,
-    Quick,
-    Accurate,
-}
-
 impl Rule {
     /// What the C++ program is compiled with: the switch of the class that engines know.
     pub fn define(self) -> Option<(&'static str, &'static str)> {
@@ -70,17 +64,6 @@ impl Rule {
             Rule::Accurate => Some(("QUICK_MASK", "0")),
         }
     }
-}
-
-/// An instruction set, in the numbers of the C++ class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Isa {
-    Scalar = -1,
-    Sse2 = 0,
-    Sse41 = 1,
-    Avx2 = 2,
-    Avx512 = 3,
-    Neon = 16,
 }
 
 fn vector(text: &str) -> Result<Vec3, String> {

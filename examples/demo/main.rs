@@ -12,6 +12,8 @@ mod image;
 mod load;
 #[path = "../../tests/native/mod.rs"]
 mod native;
+#[path = "../shared/options.rs"]
+mod options;
 mod picture;
 mod raster;
 mod scene;

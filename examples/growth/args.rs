@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 
+pub use crate::options::{Isa, Rule};
+
 /// Measures how the time of drawing grows with triangles, pixels and depth, and plots it.
 #[derive(Debug, Parser)]
 #[command(name = "growth")]
@@ -32,25 +34,6 @@ pub struct Args {
     /// Where growth.csv and the plots are written
     #[arg(long, value_name = "DIR", default_value = "docs/growth")]
     pub out: PathBuf,
-}
-
-/// An update rule, in the numbers of the C interface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Rule {
-    ThreeLayer = 0,
-    Quick = 1,
-    Accurate = 2,
-}
-
-/// An instruction set, in the numbers of the C++ class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Isa {
-    Scalar = -1,
-    Sse2 = 0,
-    Sse41 = 1,
-    Avx2 = 2,
-    Avx512 = 3,
-    Neon = 16,
 }
 
 /// What an instruction set is called; the number comes from a library.

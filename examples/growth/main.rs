@@ -9,6 +9,8 @@ mod mesh;
 #[cfg(all(test, target_os = "linux"))]
 #[path = "../../tests/native/mod.rs"]
 mod native;
+#[path = "../shared/options.rs"]
+mod options;
 mod other;
 mod ours;
 mod plot;

@@ -2,7 +2,7 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, UNTOUCHED, load};
+use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, Touched, load};
 use crate::simd::{self, Job, Simd};
 use crate::{Implementation, UpdateRule};
 
@@ -44,23 +44,22 @@ impl Merge<'_> {
     fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
         let Self { into, from } = self;
         let tiles = into.all_tiles();
-        let step = T::LANES / SUB_TILES;
-        for y in (0..tiles.y1).step_by(step) {
+        for y in (0..tiles.y1).step_by(T::LANES / SUB_TILES) {
             for x in 0..tiles.x1 {
                 // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at
                 // once, `y` is the block's; `into` is exclusive, `from` is not written while it is borrowed; both were
                 // made for their rules.
                 unsafe {
-                    let untouched = |y: u32| *from.least_of(x, y) == UNTOUCHED;
-                    if untouched(y) && (step == 1 || untouched(y + 1)) {
+                    let other = TilePlace::new(from, x, y);
+                    if Touched::of::<T>(from, other).none() {
                         continue;
                     }
                     let at = TilePlace::new(into, x, y);
                     let mut planes = load::<T, R>(s, into, at);
-                    let theirs = load::<T, O>(s, from, TilePlace::new(from, x, y));
+                    let theirs = load::<T, O>(s, from, other);
                     // Depths behind the reference change nothing.
                     let nearest = s.max_positive(theirs.z0, theirs.z_near);
-                    if s.mask_bits(s.le(nearest, planes.z0)) == ((1_u64 << T::LANES) - 1) as u32 {
+                    if s.all(s.le(nearest, planes.z0)) {
                         continue;
                     }
                     let layers = O::layers(s, &theirs);

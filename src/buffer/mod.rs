@@ -237,7 +237,7 @@ fn outside(width: u32, height: u32) -> [u32; BLOCK] {
 /// # Safety
 /// The border can be read for a vector.
 #[inline(always)]
-pub(crate) unsafe fn fresh<S: Simd, R: Rule>(s: S, border: Option<*const u32>) -> Planes<S> {
+unsafe fn fresh<S: Simd, R: Rule>(s: S, border: Option<*const u32>) -> Planes<S> {
     let mut planes = R::empty(s);
     if let Some(outside) = border {
         // SAFETY: the caller's contract.
@@ -263,17 +263,33 @@ impl TilePlace {
     }
 }
 
-/// Was something drawn since the last clear into a tile, and for vectors of sixteen lanes, into the tile below?
-///
-/// # Safety
-/// As [`load`].
-#[inline(always)]
-pub(crate) unsafe fn touched<S: Simd>(buffer: &Buffer, at: TilePlace) -> bool {
-    // SAFETY: the caller's contract; blocks are whole.
-    unsafe {
+/// Whether something was drawn since the last clear into a tile, and, for vectors of sixteen lanes, into the tile below
+/// (else it is the same again): the bits of their least depths, of which only [`UNTOUCHED`] is negative.
+#[derive(Clone, Copy)]
+pub(crate) struct Touched {
+    upper: i32,
+    lower: i32,
+}
+
+impl Touched {
+    /// # Safety
+    /// It is a tile of the buffer, into which nobody draws.
+    #[inline(always)]
+    pub unsafe fn of<S: Simd>(buffer: &Buffer, at: TilePlace) -> Self {
+        const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
         let below = if S::LANES == SUB_TILES { 0 } else { buffer.tiles_w() as usize };
-        // Of all least depths only `UNTOUCHED` is negative.
-        ((*at.least).to_bits() | (*at.least.add(below)).to_bits()) as i32 >= 0
+        // SAFETY: the caller's contract; blocks are whole.
+        unsafe { Self { upper: (*at.least).to_bits() as i32, lower: (*at.least.add(below)).to_bits() as i32 } }
+    }
+
+    #[inline(always)]
+    pub fn all(self) -> bool {
+        self.upper | self.lower >= 0
+    }
+
+    #[inline(always)]
+    pub fn none(self) -> bool {
+        self.upper & self.lower < 0
     }
 }
 
@@ -283,24 +299,20 @@ pub(crate) unsafe fn touched<S: Simd>(buffer: &Buffer, at: TilePlace) -> bool {
 /// It is a tile of the buffer, which was made for the rule `R` and into which nobody draws.
 #[inline(always)]
 pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace) -> Planes<S> {
-    const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
     // SAFETY: the caller's contract; blocks are whole.
     unsafe {
-        // Of all least depths only `UNTOUCHED` is negative.
-        let sign = |below: usize| (*at.least.add(below)).to_bits() as i32;
-        let upper = sign(0);
-        let lower = if S::LANES == SUB_TILES { upper } else { sign(buffer.tiles_w() as usize) };
+        let touched = Touched::of::<S>(buffer, at);
         let planes = R::load(s, at.planes);
-        if upper | lower >= 0 {
+        if touched.all() {
             return planes;
         }
         let untouched = fresh::<S, R>(s, buffer.border(at.x, at.y));
-        if upper & lower < 0 {
+        if touched.none() {
             return untouched;
         }
         let first = s.first(SUB_TILES);
-        let touched = if lower < 0 { first } else { s.and_not_m(first, s.first(S::LANES)) };
-        choose(s, touched, &planes, &untouched)
+        let lanes = if touched.lower < 0 { first } else { s.and_not_m(first, s.first(S::LANES)) };
+        choose(s, lanes, &planes, &untouched)
     }
 }
 

@@ -103,8 +103,7 @@ macro_rules! two_plane_layout {
             // SAFETY: the caller's contract.
             unsafe {
                 let (z0, z_near) = (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()));
-                let nearer = s.and_m(s.lt(z0, depth), s.lt(z_near, depth));
-                if s.mask_bits(nearer) != ((1_u64 << S::LANES) - 1) as u32 {
+                if !s.all(s.and_m(s.lt(z0, depth), s.lt(z_near, depth))) {
                     return false;
                 }
                 // What the rule makes of it: everything is the reference, and the layer is empty.

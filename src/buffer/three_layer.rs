@@ -89,7 +89,7 @@ impl Rule for ThreeLayer {
         unsafe {
             // No other depth is nearer than the near layer's.
             let z_near = s.load_f(p.add(BLOCK).cast());
-            if s.mask_bits(s.lt(z_near, depth)) != ((1_u64 << S::LANES) - 1) as u32 {
+            if !s.all(s.lt(z_near, depth)) {
                 return false;
             }
             // What `insert` makes of it: the near layer becomes the far one, and nothing hides behind it any more.

@@ -89,4 +89,11 @@ impl Batch {
         // SAFETY: all of it is `MaybeUninit`.
         unsafe { MaybeUninit::uninit().assume_init() }
     }
+
+    /// First and last column and row of tiles of a triangle's box.
+    #[inline(always)]
+    pub fn tiles(&self, lane: usize) -> [u32; 4] {
+        // SAFETY: setup stores the tiles of every box.
+        unsafe { [self.tile_x0.get(lane), self.tile_x1.get(lane), self.tile_y0.get(lane), self.tile_y1.get(lane)] }
+    }
 }

@@ -30,7 +30,7 @@ fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
         // SAFETY: no more is read than is left.
         let index = unsafe {
             let p = indices.as_ptr().add(done);
-            if left >= S::LANES { s.load_i(p) } else { s.select_i(s.first(left), s.load_some(p, left), s.i(*p as i32)) }
+            if left >= S::LANES { s.load_i(p) } else { s.load_filled(p, left, *p) }
         };
         low = s.max_u(low, s.and_not(index, s.i(-1)));
         high = s.max_u(high, index);

@@ -187,8 +187,7 @@ impl<S: Simd> Group<S> {
                 let n = group.len().saturating_sub(at);
                 // SAFETY: no more is read than is there; the array holds three vectors.
                 unsafe {
-                    let some = s.load_some(group.as_ptr().wrapping_add(at), n);
-                    let index = s.select_i(s.first(n), some, s.i(group[0] as i32));
+                    let index = s.load_filled(group.as_ptr().wrapping_add(at), n, group[0]);
                     s.store_i(padded.as_mut_ptr().cast::<u32>().add(at), index);
                 }
             }

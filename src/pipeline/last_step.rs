@@ -13,7 +13,7 @@ use super::traverse::{Lists, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
-    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, load, touched,
+    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, Touched, load,
 };
 use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
@@ -101,33 +101,31 @@ impl<T: Simd> LastStep for Draw<'_, T> {
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         tally.rasterized += u64::from(alive.rasterized.count_ones());
-        if alive.lanes == 0 && !self.buffer.statistics() {
-            return true;
+        if self.buffer.statistics() {
+            tally.traversed += tiles_in(batch, alive.rasterized, self.clip);
+            let (updated, merged) = self.update::<true>(batch, alive);
+            (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);
+        } else if alive.lanes != 0 {
+            self.update::<false>(batch, alive);
         }
+        true
+    }
+}
+
+impl<T: Simd> Draw<'_, T> {
+    /// Updates the tiles of triangles. If `COUNT`: how many, and in how many the reference depth rose.
+    #[inline(always)]
+    fn update<const COUNT: bool>(&mut self, batch: &Batch, alive: &Alive) -> (u64, u64) {
         let &mut Self { t, buffer, clip, ref mut lists } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
-        if !buffer.statistics() {
-            match buffer.rule() {
-                UpdateRule::ThreeLayer => t.apart(Traverse { way, step: Update::<ThreeLayer, false>::new(buffer) }).0,
-                UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, false>::new(buffer) }).0,
-                UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, false>::new(buffer) }).0,
-            };
-            return true;
-        }
-        for lane in bits(alive.rasterized) {
-            tally.traversed += tiles_in(batch, lane, clip);
-        }
-        let (updated, merged) = match buffer.rule() {
+        match buffer.rule() {
             UpdateRule::ThreeLayer => {
-                t.apart(Traverse { way, step: Update::<ThreeLayer, true>::new(buffer) }).1.counts()
+                t.apart(Traverse { way, step: Update::<ThreeLayer, COUNT>::new(buffer) }).1.counts()
             }
-            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, true>::new(buffer) }).1.counts(),
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, true>::new(buffer) }).1.counts(),
-        };
-        tally.updated += updated;
-        tally.merged += merged;
-        true
+            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, COUNT>::new(buffer) }).1.counts(),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, COUNT>::new(buffer) }).1.counts(),
+        }
     }
 }
 
@@ -146,15 +144,16 @@ impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
     }
 }
 
-/// Tiles of a triangle's box inside of a rectangle.
-#[inline(always)]
-fn tiles_in(batch: &Batch, lane: usize, clip: TileRect) -> u64 {
-    // SAFETY: setup stores the tiles of every box.
-    let [x0, x1, y0, y1] =
-        unsafe { [&batch.tile_x0, &batch.tile_x1, &batch.tile_y0, &batch.tile_y1].map(|tile| tile.get(lane)) };
-    let wide = (x1 + 1).min(clip.x1).saturating_sub(x0.max(clip.x0));
-    let high = (y1 + 1).min(clip.y1).saturating_sub(y0.max(clip.y0));
-    u64::from(wide) * u64::from(high)
+/// Tiles of the boxes of the triangles in `lanes`, inside of a rectangle.
+fn tiles_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+    let mut tiles = 0;
+    for lane in bits(lanes) {
+        let [x0, x1, y0, y1] = batch.tiles(lane);
+        let wide = (x1 + 1).min(clip.x1).saturating_sub(x0.max(clip.x0));
+        let high = (y1 + 1).min(clip.y1).saturating_sub(y0.max(clip.y0));
+        tiles += u64::from(wide) * u64::from(high);
+    }
+    tiles
 }
 
 /// Updates tiles, and counts them if `COUNT`.
@@ -220,7 +219,7 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         unsafe {
-            if touched::<T>(self.buffer, at) && R::replace(t, at.planes, depth) {
+            if Touched::of::<T>(self.buffer, at).all() && R::replace(t, at.planes, depth) {
                 t.store_least(at.least, self.buffer.tiles_w() as usize, depth);
                 if COUNT {
                     self.counts += if T::LANES == SUB_TILES { 0x0001_0001 } else { 0x0101_0101 };
@@ -284,9 +283,7 @@ impl<T: Simd> LastStep for Query<'_, T> {
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
         if buffer.statistics() {
-            for lane in bits(counted) {
-                tally.traversed += tiles_in(batch, lane, clip);
-            }
+            tally.traversed += tiles_in(batch, counted, clip);
         }
         stopped.is_none()
     }
@@ -328,7 +325,7 @@ impl<T: Simd> TileStep<T> for Touch {
 /// Is no pixel covered?
 #[inline(always)]
 fn nothing<T: Simd>(t: T, covered: T::I) -> bool {
-    t.mask_bits(t.eq_i(covered, t.i(0))) == ((1_u64 << T::LANES) - 1) as u32
+    t.all(t.eq_i(covered, t.i(0)))
 }
 
 struct Compare<'a, R> {
@@ -359,7 +356,7 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
         self.touches |= !nothing(t, covered);
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at), covered, depth) };
-        t.mask_bits(hidden) == ((1_u64 << T::LANES) - 1) as u32
+        t.all(hidden)
     }
 
     #[inline(always)]
@@ -392,11 +389,9 @@ impl LastStep for Bins<'_, '_> {
         tally.rasterized += u64::from(alive.rasterized.count_ones());
         let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
         for lane in bits(alive.lanes) {
-            // SAFETY: setup stores the corners and the tiles of the box of every triangle that is binned.
-            let (triangle, [x0, x1, y0, y1]) = unsafe {
-                let tiles = [&batch.tile_x0, &batch.tile_x1, &batch.tile_y0, &batch.tile_y1];
-                (batch.corners.each_ref().map(|x| x.get(lane)), tiles.map(|tile| tile.get(lane)))
-            };
+            // SAFETY: setup stores the corners of every triangle that is binned.
+            let triangle = batch.corners.each_ref().map(|x| unsafe { x.get(lane) });
+            let [x0, x1, y0, y1] = batch.tiles(lane);
             // The last bin takes what division leaves over.
             let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
             let row = |tile: u32| (tile / high).min(self.bins.1 - 1);

@@ -116,7 +116,7 @@ pub(super) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let regular = s.and_m(in_range, in_band);
     let column = s.to_f(s.round(s.add(across, s.f(camera.half_width))));
     let row = s.to_f(s.round(s.add(down, s.f(camera.half_height))));
-    if s.mask_bits(regular) == (1 << S::LANES) - 1 {
+    if s.all(regular) {
         return [column, row, z];
     }
     let minus_w = s.sub(s.f(0.0), w);

@@ -24,7 +24,7 @@ const CLOSED: f32 = -2.0;
 /// Eight roundings: of a constant, a slope, their product and sum, with room.
 const WIDEN: f32 = 8.0 / (1 << 24) as f32;
 
-pub(super) const PLACE_SHIFT: i32 = 16;
+const PLACE_SHIFT: i32 = 16;
 const LOW: u32 = (1 << PLACE_SHIFT) - 1;
 
 type Words = [MaybeUninit<u32>; STRIPS + MAX_LANES];
@@ -65,7 +65,7 @@ pub(super) struct Lists {
     /// Strips with an open tile.
     opened: [MaybeUninit<u32>; STRIPS + 1],
     /// Number of the strip and column of every open tile.
-    tiles: [MaybeUninit<u32>; TILES + MAX_LANES],
+    tiles: [MaybeUninit<u32>; MAX_TILES],
 }
 
 /// The strips of some triangles, and how far they were taken.
@@ -109,7 +109,7 @@ impl<'a> Strips<'a> {
     pub fn place(&self, strip: usize) -> (usize, u32) {
         // SAFETY: the strips up to `listed` were written, and only those are asked for.
         let word = unsafe { self.lists.place.get_unchecked(strip).assume_init() };
-        ((word >> PLACE_SHIFT) as usize, word & LOW)
+        unpack(word)
     }
 
     /// The number of the `k`th strip that has an open tile.
@@ -127,13 +127,6 @@ impl<'a> Strips<'a> {
             let sub_row = self.lists.sub_row.get_unchecked(strip).assume_init();
             (self.lists.top.get_unchecked(strip).assume_init(), sub_row as i32)
         }
-    }
-
-    /// Number of column 0's block of a strip.
-    #[inline(always)]
-    pub fn block(&self, strip: usize) -> u32 {
-        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
-        unsafe { self.lists.block.get_unchecked(strip).assume_init() }
     }
 
     /// What the tiles of a strip have in common.
@@ -158,7 +151,7 @@ impl<'a> Strips<'a> {
     pub fn tile(&self, k: usize) -> (usize, u32) {
         // SAFETY: only those that `next` counted are asked for.
         let word = unsafe { self.lists.tiles.get_unchecked(k).assume_init() };
-        ((word >> PLACE_SHIFT) as usize, word & LOW)
+        unpack(word)
     }
 
     /// Lists the next open tiles. Nothing: there are no more strips.
@@ -194,8 +187,7 @@ impl<'a> Strips<'a> {
         while self.todo != 0 && listed < STRIPS {
             let lane = self.todo.trailing_zeros();
             let k = lane as usize;
-            // SAFETY: setup stores the tiles of every box.
-            let (y0, y1) = unsafe { (batch.tile_y0.get(k), batch.tile_y1.get(k)) };
+            let [_, _, y0, y1] = batch.tiles(k);
             let first = (y0 / height::<T>()).max(begin);
             let rows = (y1 / height::<T>() + 1).min(end).saturating_sub(first);
             last = lane << PLACE_SHIFT | (first + self.row);
@@ -265,39 +257,46 @@ impl<'a> Strips<'a> {
 
         let nearest = of(&batch.nearest);
         let number = t.shl::<PLACE_SHIFT>(t.add_i(t.i(k as i32), t.iota()));
-        // SAFETY: there is room for a vector after `STRIPS`.
-        unsafe {
-            t.store_i(self.lists.first.as_mut_ptr().add(k).cast(), t.or(number, first));
-            t.store_i(self.lists.count.as_mut_ptr().add(k).cast(), count);
-            // Exact: there are at most 2^20 tiles.
-            let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
-            if height::<T>() == 1 {
-                let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
-                t.store_i(self.lists.block.as_mut_ptr().add(k).cast(), block);
-                t.store_i(self.lists.index.as_mut_ptr().add(k).cast(), in_rows);
-            } else {
-                t.store_i(self.lists.block.as_mut_ptr().add(k).cast(), in_rows);
-                t.store_i(self.lists.index.as_mut_ptr().add(k).cast(), t.shl::<1>(in_rows));
-            }
-            t.store_f(self.lists.across.as_mut_ptr().add(k).cast(), of(&batch.z_across));
-            t.store_f(self.lists.clamp.as_mut_ptr().add(k).cast(), of(&batch.z_clamp));
-            t.store_i(self.lists.sub_column.as_mut_ptr().add(k).cast(), t.shl::<2>(of_i(&batch.tile_x0)));
-            t.store_i(self.lists.inner_first.as_mut_ptr().add(k).cast(), inner_first);
-            t.store_i(self.lists.inner.as_mut_ptr().add(k).cast(), inner);
-            t.store_f(self.lists.top.as_mut_ptr().add(k).cast(), top);
-            // Rows of sub-tiles below the box's first tile.
-            let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
-            t.store_i(self.lists.sub_row.as_mut_ptr().add(k).cast(), t.shl::<1>(rows_below));
-            if height::<T>() == 1 {
-                t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), nearest);
-            } else {
-                let middle = t.add(top, t.f(TILE_HEIGHT as f32));
-                let closed = t.f(CLOSED);
-                let upper = t.select(t.lt(y0, middle), nearest, closed);
-                let lower = t.select(t.le(middle, y1), nearest, closed);
-                t.store_f(self.lists.upper.as_mut_ptr().add(k).cast(), upper);
-                t.store_f(self.lists.lower.as_mut_ptr().add(k).cast(), lower);
-            }
+        macro_rules! store {
+            ($list:ident, $value:expr) => {
+                // SAFETY: there is room for a vector after `STRIPS`.
+                unsafe { t.store_f(self.lists.$list.as_mut_ptr().add(k).cast(), $value) }
+            };
+            (i $list:ident, $value:expr) => {
+                // SAFETY: as above.
+                unsafe { t.store_i(self.lists.$list.as_mut_ptr().add(k).cast(), $value) }
+            };
+        }
+        store!(i first, t.or(number, first));
+        store!(i count, count);
+        // Exact: there are at most 2^20 tiles.
+        let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
+        if height::<T>() == 1 {
+            let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
+            store!(i block, block);
+            store!(i index, in_rows);
+        } else {
+            store!(i block, in_rows);
+            store!(i index, t.shl::<1>(in_rows));
+        }
+        store!(across, of(&batch.z_across));
+        store!(clamp, of(&batch.z_clamp));
+        store!(i sub_column, t.shl::<2>(of_i(&batch.tile_x0)));
+        store!(i inner_first, inner_first);
+        store!(i inner, inner);
+        store!(top, top);
+        // Rows of sub-tiles below the box's first tile.
+        let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
+        store!(i sub_row, t.shl::<1>(rows_below));
+        if height::<T>() == 1 {
+            store!(upper, nearest);
+        } else {
+            let middle = t.add(top, t.f(TILE_HEIGHT as f32));
+            let closed = t.f(CLOSED);
+            let upper = t.select(t.lt(y0, middle), nearest, closed);
+            let lower = t.select(t.le(middle, y1), nearest, closed);
+            store!(upper, upper);
+            store!(lower, lower);
         }
     }
 
@@ -344,6 +343,12 @@ impl<'a> Strips<'a> {
         }
         Open { strips, tiles }
     }
+}
+
+/// The two numbers of a word of a list.
+#[inline(always)]
+fn unpack(word: u32) -> (usize, u32) {
+    ((word >> PLACE_SHIFT) as usize, word & LOW)
 }
 
 /// A vector of spans of rows of pixels, from the first to the last.

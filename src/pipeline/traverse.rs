@@ -70,7 +70,8 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
         for k in 0..open.tiles {
             if k + AHEAD < open.tiles {
                 let (strip, x) = strips.tile(k + AHEAD);
-                let planes = buffer.planes().wrapping_add((strips.block(strip) + x) as usize * S::PLANES * BLOCK);
+                let planes =
+                    buffer.planes().wrapping_add((strips.common(strip).block + x) as usize * S::PLANES * BLOCK);
                 for plane in 0..S::PLANES {
                     t.prefetch(planes.wrapping_add(plane * BLOCK));
                 }

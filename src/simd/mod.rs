@@ -187,6 +187,19 @@ pub(crate) trait Simd: Copy {
     fn and_not_m(self, a: Self::M, b: Self::M) -> Self::M;
     /// One bit a lane, lane 0 lowest.
     fn mask_bits(self, m: Self::M) -> u32;
+    /// Are all lanes in the mask?
+    #[inline(always)]
+    fn all(self, m: Self::M) -> bool {
+        self.mask_bits(m) == ((1_u64 << Self::LANES) - 1) as u32
+    }
+    /// [`Self::load_some`] with `fill` after the first `n` values.
+    /// # Safety
+    /// As there.
+    #[inline(always)]
+    unsafe fn load_filled(self, p: *const u32, n: usize, fill: u32) -> Self::I {
+        // SAFETY: the caller's contract.
+        self.select_i(self.first(n), unsafe { self.load_some(p, n) }, self.i(fill as i32))
+    }
     /// A mask of the first `n` lanes.
     #[inline(always)]
     fn first(self, n: usize) -> Self::M {
