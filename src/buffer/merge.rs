@@ -2,7 +2,7 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, Touched, load};
+use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, Touched, choose, load};
 use crate::simd::{self, Job, Simd};
 use crate::{Implementation, UpdateRule};
 
@@ -44,6 +44,7 @@ impl Merge<'_> {
     fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
         let Self { into, from } = self;
         let tiles = into.all_tiles();
+        let alike = into.rule() == from.rule();
         for y in (0..tiles.y1).step_by(T::LANES / SUB_TILES) {
             for x in 0..tiles.x1 {
                 // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at
@@ -62,9 +63,18 @@ impl Merge<'_> {
                     if s.all(s.le(nearest, planes.z0)) {
                         continue;
                     }
-                    let layers = O::layers(s, &theirs);
-                    for &(mask, z) in &layers[..O::LAYERS] {
-                        R::insert(s, &mut planes, mask, z);
+                    // Where all of the other is nearer than all that is here, it stays as it is. Tested lane by lane,
+                    // so that the bits do not depend on how many lanes there are.
+                    let taken = s.lt(s.max_positive(planes.z0, planes.z_near), theirs.z0);
+                    if alike && s.all(taken) {
+                        planes = theirs;
+                    } else {
+                        for &(mask, z) in &O::layers(s, &theirs)[..O::LAYERS] {
+                            R::insert(s, &mut planes, mask, z);
+                        }
+                        if alike {
+                            planes = choose(s, taken, &theirs, &planes);
+                        }
                     }
                     R::store(s, at.planes, &planes);
                     s.store_least(at.least, into.tiles_w() as usize, planes.z0);

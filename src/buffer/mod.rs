@@ -16,6 +16,7 @@
 //! a triangle that covers any pixel inside covers all pixels outside.
 
 mod accurate;
+pub(crate) mod areas;
 pub(crate) mod merge;
 pub(crate) mod pixels;
 mod quick;
@@ -62,7 +63,10 @@ pub(crate) struct Buffer {
     rule: UpdateRule,
     statistics: bool,
     planes: AlignedWords,
+    /// The least depths of the tiles, then those of the areas (see `areas.rs`), with room for a vector after each.
     least: AlignedWords,
+    areas_w: u32,
+    first_area: usize,
     /// For the blocks that the screen's edge cuts: which pixels of each sub-tile are outside.
     /// First those of the right column, then of the lowest row, then of the corner.
     border: [[u32; BLOCK]; 3],
@@ -84,6 +88,8 @@ impl Buffer {
         let tiles = tiles_w as usize * tiles_h.next_multiple_of(2) as usize;
         let right = width - (tiles_w - 1) * TILE_WIDTH;
         let bottom = height - (tiles_h - 1) / 2 * BLOCK_HEIGHT;
+        let (areas_w, areas_h) = areas::counts(tiles_w, tiles_h);
+        let first_area = tiles + MAX_LANES;
         let mut buffer = Self {
             width,
             height,
@@ -92,8 +98,9 @@ impl Buffer {
             rule,
             statistics,
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
-            // The widest vector may be loaded from the last of them.
-            least: AlignedWords::new(tiles + MAX_LANES, allocator)?,
+            least: AlignedWords::new(first_area + areas_w as usize * areas_h as usize + MAX_LANES + 1, allocator)?,
+            areas_w,
+            first_area,
             border: [outside(right, BLOCK_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
             cut_column: if width.is_multiple_of(8) { u32::MAX } else { tiles_w - 1 },
             cut_row: if height.is_multiple_of(4) { u32::MAX } else { (tiles_h - 1) / 2 },
@@ -134,6 +141,8 @@ impl Buffer {
             core::slice::from_raw_parts_mut(self.least.as_ptr().cast::<core::mem::MaybeUninit<f32>>(), self.least.len())
         };
         least.fill(core::mem::MaybeUninit::new(UNTOUCHED));
+        // SAFETY: `&mut self`, and a word of the buffer.
+        unsafe { self.drawn().write(0) };
     }
 
     pub fn bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
@@ -177,6 +186,30 @@ impl Buffer {
     #[inline(always)]
     pub fn least(&self) -> *mut f32 {
         self.least.as_ptr().cast()
+    }
+
+    /// The least depths of the areas, row by row, and room for a vector more.
+    #[inline(always)]
+    pub fn areas(&self) -> *mut f32 {
+        self.least().wrapping_add(self.first_area)
+    }
+
+    /// How many tiles were drawn into since the areas were brought up to date.
+    #[inline(always)]
+    pub fn drawn(&self) -> *mut u32 {
+        self.least.as_ptr().wrapping_add(self.least.len() - 1)
+    }
+
+    /// Areas in a row.
+    #[inline(always)]
+    pub fn areas_w(&self) -> u32 {
+        self.areas_w
+    }
+
+    /// The number of the first area, counted from the first tile's least depth on.
+    #[inline(always)]
+    pub fn first_area(&self) -> usize {
+        self.first_area
     }
 
     /// The least depth of tile (x, y).

@@ -13,7 +13,8 @@ use super::traverse::{Lists, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
-    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, Touched, load,
+    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, Touched, areas,
+    load,
 };
 use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
@@ -80,18 +81,20 @@ pub(super) struct Draw<'a, T> {
     buffer: &'a Buffer,
     clip: TileRect,
     lists: MaybeUninit<Lists>,
+    /// Nobody else draws elsewhere in the buffer.
+    alone: bool,
 }
 
 impl<'a, T: Simd> Draw<'a, T> {
     #[inline(always)]
     pub fn new(t: T, buffer: &'a Buffer) -> Self {
-        Self::inside(t, buffer, buffer.all_tiles())
+        Self { alone: true, ..Self::inside(t, buffer, buffer.all_tiles()) }
     }
 
     #[inline(always)]
     pub fn inside(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
         const { assert!(T::LANES.is_multiple_of(SUB_TILES)) }
-        Self { t, buffer, clip, lists: Lists::new() }
+        Self { t, buffer, clip, lists: Lists::new(), alone: false }
     }
 }
 
@@ -116,16 +119,21 @@ impl<T: Simd> Draw<'_, T> {
     /// Updates the tiles of triangles. If `COUNT`: how many, and in how many the reference depth rose.
     #[inline(always)]
     fn update<const COUNT: bool>(&mut self, batch: &Batch, alive: &Alive) -> (u64, u64) {
-        let &mut Self { t, buffer, clip, ref mut lists } = self;
+        let &mut Self { t, buffer, clip, ref mut lists, alone } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
-        match buffer.rule() {
+        let (counts, tiles) = match buffer.rule() {
             UpdateRule::ThreeLayer => {
-                t.apart(Traverse { way, step: Update::<ThreeLayer, COUNT>::new(buffer) }).1.counts()
+                t.apart(Traverse { way, step: Update::<ThreeLayer, COUNT>::new(buffer) }).1.done()
             }
-            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, COUNT>::new(buffer) }).1.counts(),
-            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, COUNT>::new(buffer) }).1.counts(),
+            UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, COUNT>::new(buffer) }).1.done(),
+            UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, COUNT>::new(buffer) }).1.done(),
+        };
+        if alone {
+            // SAFETY: nobody else uses the buffer.
+            unsafe { areas::drawn(t, buffer, tiles) };
         }
+        counts
     }
 }
 
@@ -161,6 +169,7 @@ struct Update<'a, R, const COUNT: bool> {
     buffer: &'a Buffer,
     updated: u64,
     merged: u64,
+    tiles: usize,
     /// What the next tiles add to both.
     counts: u32,
     /// The screen's edge cuts sub-tiles somewhere.
@@ -171,13 +180,13 @@ struct Update<'a, R, const COUNT: bool> {
 impl<'a, R, const COUNT: bool> Update<'a, R, COUNT> {
     #[inline(always)]
     fn new(buffer: &'a Buffer) -> Self {
-        Self { buffer, updated: 0, merged: 0, counts: 0, cuts: buffer.cuts(), rule: PhantomData }
+        Self { buffer, updated: 0, merged: 0, tiles: 0, counts: 0, cuts: buffer.cuts(), rule: PhantomData }
     }
 
-    /// Tiles that were updated, and in which the reference depth rose.
+    /// Tiles that were updated, and in which the reference depth rose; and how many were taken, of a vector's height.
     #[inline(always)]
-    fn counts(&self) -> (u64, u64) {
-        (self.updated, self.merged)
+    fn done(&self) -> ((u64, u64), usize) {
+        ((self.updated, self.merged), self.tiles)
     }
 }
 
@@ -231,8 +240,9 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     }
 
     #[inline(always)]
-    fn tiles_done(&mut self) {
+    fn tiles_done(&mut self, tiles: usize) {
         const { assert!(MAX_TILES < 256) }
+        self.tiles += tiles;
         if !COUNT {
             return;
         }

@@ -17,6 +17,7 @@
 //! instruction set, sub-tile by sub-tile; how many triangles are set up together changes nothing.
 
 mod batch;
+mod boxes;
 mod chunk;
 mod clip;
 mod cull;

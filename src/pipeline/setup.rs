@@ -19,6 +19,7 @@
 //! The margin is `32 u (Z + gx ex + gy ey)`. On slivers it is large, and the clamp decides.
 
 use super::batch::Batch;
+use super::boxes::{Boxes, QUERY_SLACK};
 use super::edges;
 use super::survivors::Corner;
 use crate::buffer::Buffer;
@@ -34,8 +35,6 @@ const BEYOND: f32 = (1 << 20) as f32;
 const MARGIN: f32 = 32.0 / (1 << 24) as f32;
 /// One unit in the last place and a half: from a vertex's rounded 1/w to a bound of the true one.
 const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
-/// How far, in 1/256 pixel, a snapped vertex may be from the true one, and a little.
-const QUERY_SLACK: i32 = 2;
 
 /// What the last step wants of setup.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -76,6 +75,20 @@ pub(super) fn set_up<S: Simd>(
 ) -> Alive {
     let Setup { s, purpose, buffer, both_sides, shared } = setup;
     let query = purpose == Purpose::Query;
+    let boxes = Boxes::new(s, buffer, purpose, &[a, b, c]);
+    let inside = s.and_m(active, boxes.inside);
+    let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
+    let mut hidden = 0;
+    if purpose != Purpose::Bin && !shared {
+        // SAFETY: the pipeline's caller vouches for the buffer.
+        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, purpose, nearest) });
+        // Where nothing is counted, nothing more has to be known of a vector that is hidden.
+        if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
+            return Alive::default();
+        }
+    }
+    let Boxes { column0, column1, row0, row1, tile_x0, tile_x1, tile_y0, tile_y1, .. } = boxes;
+
     // The topmost corner first.
     let b_top = s.and_m(s.lt(b[1], a[1]), s.le(b[1], c[1]));
     let c_top = s.and_m(s.lt(c[1], a[1]), s.lt(c[1], b[1]));
@@ -88,24 +101,7 @@ pub(super) fn set_up<S: Simd>(
         }
     }
     let (area, deltas) = doubled_area(s, v0, v1, v2);
-
-    // Bounding box: pixels whose centre is inside, or, for a query, that are touched.
-    let (min_x, max_x) = (s.min(v0[0], s.min(v1[0], v2[0])), s.max(v0[0], s.max(v1[0], v2[0])));
-    let max_y = s.max(v1[1], v2[1]);
-    let (low, high) = if query { (-QUERY_SLACK, 256 + QUERY_SLACK) } else { (127, 127) };
-    let column0 = s.max_i(pixel(s, min_x, low), s.i(0));
-    let column1 = s.min_i(pixel(s, max_x, high), s.i(buffer.width() as i32));
-    let row0 = s.max_i(pixel(s, v0[1], low), s.i(0));
-    let row1 = s.min_i(pixel(s, max_y, high), s.i(buffer.height() as i32));
-    let inside = s.and_m(s.gt_i(column1, column0), s.gt_i(row1, row0));
-    let mut alive = s.and_m(active, inside);
-    if !query {
-        alive = s.and_m(alive, s.lt(s.f(0.0), area));
-    }
-    let tile_x0 = s.sra::<5>(column0);
-    let tile_x1 = s.sra::<5>(s.sub_i(column1, s.i(1)));
-    let tile_y0 = s.sra::<3>(row0);
-    let tile_y1 = s.sra::<3>(s.sub_i(row1, s.i(1)));
+    let alive = if query { inside } else { s.and_m(inside, s.lt(s.f(0.0), area)) };
 
     // SAFETY (of the stores below): the arrays of a batch hold the lanes of any vector.
     macro_rules! store {
@@ -122,8 +118,7 @@ pub(super) fn set_up<S: Simd>(
             unsafe { s.store_d(batch.$field.as_mut_ptr(), $value) }
         };
     }
-    let wide = s.lt(s.f(WIDE), widest(s, min_x, max_x, v0[1], max_y));
-    let wide = s.mask_bits(s.and_m(wide, active));
+    let wide = s.mask_bits(s.and_m(s.lt(s.f(WIDE), boxes.widest), active));
     if purpose == Purpose::Bin || wide != 0 {
         let corners = [v0[0], v0[1], v0[2], v1[0], v1[1], v1[2], v2[0], v2[1], v2[2]];
         for (lanes, value) in batch.corners.iter_mut().zip(corners) {
@@ -134,9 +129,7 @@ pub(super) fn set_up<S: Simd>(
     let mut lanes = s.mask_bits(alive);
     if wide != 0 && !query {
         // In f64 the sign of the area of so wide a triangle may be off.
-        let drawable = s.mask_bits(s.and_m(active, inside));
-        lanes = edges::correct_facing(batch, lanes, wide & drawable);
-        alive = s.and_m(active, inside);
+        lanes = edges::correct_facing(batch, lanes, wide & s.mask_bits(inside));
     }
     let rasterized = lanes;
     store!(i tile_x0, tile_x0);
@@ -147,21 +140,7 @@ pub(super) fn set_up<S: Simd>(
         return Alive { rasterized, lanes };
     }
 
-    // Of a triangle that reaches one to four tiles and is hidden in all of them, nothing more is computed.
-    let nearest = s.max(v0[2], s.max(v1[2], v2[2]));
-    let farthest = s.min(v0[2], s.min(v1[2], v2[2]));
-    let nearest = s.mul(nearest, s.f(1.0 + VERTEX_MARGIN));
-    let (across, down) = (s.sub_i(tile_x1, tile_x0), s.sub_i(tile_y1, tile_y0));
-    let few = s.and_not_m(s.or_m(s.gt_i(across, s.i(1)), s.gt_i(down, s.i(1))), alive);
-    if !shared && s.mask_bits(few) != 0 {
-        // SAFETY: lanes that are alive name tiles of the buffer, the others name the first.
-        let least = unsafe {
-            let upper = s.min(least_at(s, buffer, few, tile_x0, tile_y0), least_at(s, buffer, few, tile_x1, tile_y0));
-            s.min(upper, s.min(least_at(s, buffer, few, tile_x0, tile_y1), least_at(s, buffer, few, tile_x1, tile_y1)))
-        };
-        let hidden = if query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        lanes &= !s.mask_bits(s.and_m(few, hidden));
-    }
+    lanes &= !hidden;
     let found = Alive { rasterized, lanes };
     if lanes == 0 {
         return found;
@@ -213,6 +192,7 @@ pub(super) fn set_up<S: Simd>(
     }
 
     // Depth plane.
+    let farthest = s.min(v0[2], s.min(v1[2], v2[2]));
     let (dx1, dy1) = (s.sub(v1[0], v0[0]), s.sub(v1[1], v0[1]));
     let (dx2, dy2) = (s.sub(v2[0], v0[0]), s.sub(v2[1], v0[1]));
     let (dz1, dz2) = (s.sub(v1[2], v0[2]), s.sub(v2[2], v0[2]));
@@ -249,12 +229,6 @@ pub(super) fn set_up<S: Simd>(
     found
 }
 
-/// The largest coordinate in size.
-#[inline(always)]
-fn widest<S: Simd>(s: S, min_x: S::F, max_x: S::F, min_y: S::F, max_y: S::F) -> S::F {
-    s.max(s.max(s.abs(min_x), s.abs(max_x)), s.max(s.abs(min_y), s.abs(max_y)))
-}
-
 /// Exact differences from the first corner to the second and to the third.
 struct Deltas<S: Simd> {
     right: (S::D, S::D),
@@ -272,12 +246,6 @@ fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (
     (s.d_to_f(area), Deltas { right, left })
 }
 
-/// The pixel that a coordinate falls in, after adding to it.
-#[inline(always)]
-fn pixel<S: Simd>(s: S, x: S::F, add: i32) -> S::I {
-    s.sra::<8>(s.add_i(s.round(x), s.i(add)))
-}
-
 /// Of three corners, `y` where the second comes first, `z` where the third does, else `x`.
 #[inline(always)]
 fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z: Corner<S>) -> Corner<S> {
@@ -286,18 +254,6 @@ fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z:
         s.select(second, y[1], s.select(third, z[1], x[1])),
         s.select(second, y[2], s.select(third, z[2], x[2])),
     ]
-}
-
-/// The least depth of tile (x, y); of the first tile for lanes that are not in `m`.
-///
-/// # Safety
-/// Lanes in `m` name tiles of the buffer.
-#[inline(always)]
-unsafe fn least_at<S: Simd>(s: S, buffer: &Buffer, m: S::M, x: S::I, y: S::I) -> S::F {
-    // Exact: there are at most 2^20 tiles.
-    let row = s.round(s.mul(s.to_f(y), s.f(buffer.tiles_w() as f32)));
-    // SAFETY: the caller's contract.
-    unsafe { s.gather(buffer.least(), s.select_i(m, s.add_i(row, x), s.i(0))) }
 }
 
 /// Constant part of an edge's event as the left bound of a row and as the right one, and its slope. `dy` is not

@@ -26,7 +26,7 @@ pub(super) trait TileStep<T: Simd> {
     /// As [`Self::tile`].
     unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool;
 
-    /// Comes after at most [`MAX_TILES`](super::strips::MAX_TILES) tiles.
+    /// Comes after some tiles, at most [`MAX_TILES`](super::strips::MAX_TILES).
     #[inline(always)]
-    fn tiles_done(&mut self) {}
+    fn tiles_done(&mut self, _tiles: usize) {}
 }

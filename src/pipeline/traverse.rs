@@ -105,7 +105,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
                 return Some(lane as u32);
             }
         }
-        step.tiles_done();
+        step.tiles_done(open.tiles);
     }
     None
 }

@@ -1,0 +1,95 @@
+//! Bounding boxes of a vector of triangles, and which of them the buffer's least depths hide.
+//!
+//! A box of one or two columns and rows of tiles is compared with the least depths of its four corners' tiles, which are
+//! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same four
+//! gathers. Without areas half of a castle's triangles that got edges had no open tile.
+
+use super::setup::Purpose;
+use super::survivors::Corner;
+use crate::buffer::Buffer;
+use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
+use crate::simd::Simd;
+
+/// How far, in 1/256 pixel, a snapped vertex of a query may be from the true one, and a little.
+pub(super) const QUERY_SLACK: i32 = 2;
+
+/// The boxes of a vector of triangles: of a draw the pixels whose centre is inside, of a query those that are touched.
+pub(super) struct Boxes<S: Simd> {
+    /// The largest coordinate in size.
+    pub widest: S::F,
+    /// Pixels on the screen, the last outside.
+    pub column0: S::I,
+    pub column1: S::I,
+    pub row0: S::I,
+    pub row1: S::I,
+    /// Tiles, the last inside.
+    pub tile_x0: S::I,
+    pub tile_x1: S::I,
+    pub tile_y0: S::I,
+    pub tile_y1: S::I,
+    /// Boxes that hold a pixel.
+    pub inside: S::M,
+}
+
+impl<S: Simd> Boxes<S> {
+    #[inline(always)]
+    pub fn new(s: S, buffer: &Buffer, purpose: Purpose, [a, b, c]: &[Corner<S>; 3]) -> Self {
+        let (min_x, max_x) = (s.min(a[0], s.min(b[0], c[0])), s.max(a[0], s.max(b[0], c[0])));
+        let (min_y, max_y) = (s.min(a[1], s.min(b[1], c[1])), s.max(a[1], s.max(b[1], c[1])));
+        let (low, high) = match purpose {
+            Purpose::Query => (-QUERY_SLACK, 256 + QUERY_SLACK),
+            Purpose::Draw | Purpose::Bin => (127, 127),
+        };
+        let pixel = |x: S::F, add: i32| s.sra::<8>(s.add_i(s.round(x), s.i(add)));
+        let column0 = s.max_i(pixel(min_x, low), s.i(0));
+        let column1 = s.min_i(pixel(max_x, high), s.i(buffer.width() as i32));
+        let row0 = s.max_i(pixel(min_y, low), s.i(0));
+        let row1 = s.min_i(pixel(max_y, high), s.i(buffer.height() as i32));
+        Self {
+            widest: s.max(s.max(s.abs(min_x), s.abs(max_x)), s.max(s.abs(min_y), s.abs(max_y))),
+            column0,
+            column1,
+            row0,
+            row1,
+            tile_x0: s.sra::<5>(column0),
+            tile_x1: s.sra::<5>(s.sub_i(column1, s.i(1))),
+            tile_y0: s.sra::<3>(row0),
+            tile_y1: s.sra::<3>(s.sub_i(row1, s.i(1))),
+            inside: s.and_m(s.gt_i(column1, column0), s.gt_i(row1, row0)),
+        }
+    }
+
+    /// Boxes that nothing at `nearest` or farther shows in.
+    ///
+    /// How current the areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
+    /// would tell, and it leaves them out.
+    ///
+    /// # Safety
+    /// Nobody else uses the buffer, or, for a query, nobody draws into it.
+    #[inline(always)]
+    pub unsafe fn hidden(&self, s: S, buffer: &Buffer, purpose: Purpose, nearest: S::F) -> S::M {
+        let &Self { tile_x0: x0, tile_x1: x1, tile_y0: y0, tile_y1: y1, inside, .. } = self;
+        let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
+        let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
+        let (mut few, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
+        let (mut left, mut right, mut top, mut bottom) = (x0, x1, y0, y1);
+        if purpose != Purpose::Query && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
+            let or_area = |tile: S::I, area: S::I| s.select_i(tiles, tile, area);
+            left = or_area(x0, s.sra::<AREA_COLUMN_SHIFT>(x0));
+            right = or_area(x1, s.sra::<AREA_COLUMN_SHIFT>(x1));
+            top = or_area(y0, s.sra::<AREA_ROW_SHIFT>(y0));
+            bottom = or_area(y1, s.sra::<AREA_ROW_SHIFT>(y1));
+            first = or_area(first, s.i(buffer.first_area() as i32));
+            pitch = s.select(tiles, pitch, s.f(buffer.areas_w() as f32));
+            few = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
+        }
+        // Exact: there are at most 2^20 tiles.
+        let row = |y: S::I| s.add_i(first, s.round(s.mul(s.to_f(y), pitch)));
+        let (top, bottom) = (row(top), row(bottom));
+        // SAFETY: a box that holds a pixel names tiles or areas of the buffer, the other lanes name the first tile.
+        let at = |row: S::I, x: S::I| unsafe { s.gather(buffer.least(), s.select_i(few, s.add_i(row, x), s.i(0))) };
+        let least = s.min(s.min(at(top, left), at(top, right)), s.min(at(bottom, left), at(bottom, right)));
+        let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
+        s.and_m(few, hidden)
+    }
+}
