@@ -283,6 +283,12 @@ public:
     /** Afterwards this buffer hides what either hid. Another size or y direction is refused. */
     void MergeBuffer(MaskedOcclusionCulling *BufferB) { MOC_MergeBuffer(this, BufferB); }
 
+    /** Folds several buffers into this one: the result of MergeBuffer one by one, but faster. */
+    void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
+    {
+        MOC_MergeBuffers(this, others, count);
+    }
+
     /**
      * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view or
      * faces away, else VISIBLE.

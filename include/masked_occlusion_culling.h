@@ -310,6 +310,11 @@ typedef int32_t MOC_ClipPlanes;
 #endif // __cplusplus
 
 /**
+ * A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
+ */
+typedef struct MOC_Threadpool MOC_Threadpool;
+
+/**
  * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it); null
  * when there is no memory. Called from any thread that uses the object; must not throw.
  */
@@ -649,6 +654,21 @@ MOC_Status MOC_ClearBuffer(MaskedOcclusionCulling *moc);
 MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCulling *other);
 
 /**
+ * Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
+ * faster. `others` may name an object more than once, and `moc` itself not.
+ *
+ * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array, MOC_STATUS_INVALID_ENUM where it names
+ * `moc`: nothing is folded.
+ *
+ * # Safety
+ * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
+ * thread uses `moc` meanwhile, and none changes the others.
+ */
+MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
+                            const MaskedOcclusionCulling *const *others,
+                            uint32_t count);
+
+/**
  * Draws occluders.
  *
  * `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
@@ -901,6 +921,211 @@ MOC_Status MOC_TransformVertices(const float *matrix,
                                  float *out,
                                  uint32_t n_vertices,
                                  const struct MOC_VertexLayout *layout);
+
+/**
+ * Makes a pool of `threads` threads and writes it to `out` (null there on errors). The threads sleep until
+ * MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+ *
+ * Calls that draw return at once. The threads draw in `bins_w` by `bins_h` pieces of the screen (several for each
+ * thread are good; they are not smaller than 128x64 pixels, so that there may be fewer), in each in the order in
+ * which the calls came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
+ * in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
+ *
+ * Several threads may submit and query at once.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0,
+ * MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
+ *
+ * # Safety
+ * `out` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
+                                uint32_t bins_w,
+                                uint32_t bins_h,
+                                uint32_t max_jobs,
+                                struct MOC_Threadpool **out);
+
+/**
+ * Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
+ * allowed.
+ *
+ * # Safety
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
+ * last MOC_ThreadpoolFlush can still be read, and the object is still there.
+ */
+MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
+
+/**
+ * Lets the threads work. A second time changes nothing.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * # Safety
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
+ */
+MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
+
+/**
+ * Lets each thread sleep as soon as it has finished what it is at. Calls are taken in meanwhile, and whoever flushes
+ * does the work.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads.
+ */
+MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
+
+/**
+ * Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
+ * and, while nobody submits, the object may be used directly.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads.
+ */
+MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
+
+/**
+ * Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. A near plane that was set on the pool
+ * becomes the object's.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * # Safety
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
+ * the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
+ * submits.
+ */
+MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
+                                   MaskedOcclusionCulling *moc);
+
+/**
+ * MOC_SetResolution of the pool's object, after what was submitted is drawn.
+ *
+ * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads.
+ */
+MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32_t width, uint32_t height);
+
+/**
+ * Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads.
+ */
+MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, float near);
+
+/**
+ * Sets the matrix of the calls that follow, which is copied; null: none. Threads that submit share it.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER for the pool.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
+ */
+MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool, const float *model_to_clip);
+
+/**
+ * Sets the vertex layout of the calls that follow; null: x, y, z, w packed. Threads that submit share it.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
+ */
+MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
+                                         const struct MOC_VertexLayout *layout);
+
+/**
+ * Clears the object's buffer, in order with the calls around it. From now on nothing that was drawn before hides anything.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads.
+ */
+MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
+
+/**
+ * Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once; see
+ * MOC_RenderTriangles.
+ *
+ * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
+ * are until MOC_ThreadpoolFlush.
+ */
+MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
+                                         const float *vertices,
+                                         const uint32_t *triangles,
+                                         int32_t n_triangles,
+                                         int32_t winding,
+                                         int32_t clip_planes);
+
+/**
+ * MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
+ *
+ * Errors: as there.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
+                                  float xmin,
+                                  float ymin,
+                                  float xmax,
+                                  float ymax,
+                                  float wmin,
+                                  int32_t *result);
+
+/**
+ * MOC_TestTriangles against what is drawn by now, with the matrix, vertex layout and near plane that are set.
+ *
+ * Errors: as there.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolTestTriangles(const struct MOC_Threadpool *pool,
+                                       const float *vertices,
+                                       const uint32_t *triangles,
+                                       int32_t n_triangles,
+                                       int32_t winding,
+                                       int32_t clip_planes,
+                                       int32_t *result);
+
+/**
+ * MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
+ *
+ * Errors: as there.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
+ */
+MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *pool,
+                                                 float *out,
+                                                 int32_t flip_y);
+
+/**
+ * Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
+ * MOC_MergeBuffers: each thread takes pieces of the screen.
+ *
+ * Errors: as there; nothing is folded.
+ *
+ * # Safety
+ * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. None of the others is the pool's object, and nobody changes or destroys them
+ * until MOC_ThreadpoolFlush.
+ */
+MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
+                                      const MaskedOcclusionCulling *const *others,
+                                      uint32_t count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,12 +1,14 @@
 //! The object that engines hold: settings, a buffer, and the calls, each of which checks and hands on.
 
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
 use glam::Mat4;
 
 use crate::bins::TriList;
-use crate::buffer::Buffer;
-use crate::pipeline::{self, Camera, Mesh};
+use crate::buffer::{Buffer, TileRect};
+use crate::pipeline::{self, Camera, Kept, Mesh};
 use crate::rectangle;
-use crate::statistics::Counters;
+use crate::statistics::{Counters, Tally};
 use crate::vertices::VertexSource;
 use crate::{
     Allocator, BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, UpdateRule,
@@ -72,7 +74,8 @@ pub struct MaskedOcclusionCulling {
     y_axis: YAxis,
     allocator: Allocator,
     statistics: bool,
-    near: f32,
+    /// The bits of the near plane, so that a pool can set it.
+    near: AtomicU32,
     buffer: Option<Buffer>,
     counters: Counters,
 }
@@ -92,7 +95,7 @@ impl MaskedOcclusionCulling {
             y_axis: settings.y_axis,
             allocator: settings.allocator,
             statistics: settings.statistics,
-            near: 0.0,
+            near: AtomicU32::new(0),
             buffer: None,
             counters: Counters::default(),
         }
@@ -152,16 +155,21 @@ impl MaskedOcclusionCulling {
     /// # Errors
     /// [`Error::InvalidNumber`] for NaN or an infinity; the plane stays where it was.
     pub fn set_near_clip_plane(&mut self, near: f32) -> Result<(), Error> {
+        self.set_near_shared(near)
+    }
+
+    /// The same while others query; they take either plane.
+    pub(crate) fn set_near_shared(&self, near: f32) -> Result<(), Error> {
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
         }
-        self.near = near;
+        self.near.store(near.to_bits(), Relaxed);
         Ok(())
     }
 
     /// The near plane, in clip-space w.
     pub fn near_clip_plane(&self) -> f32 {
-        self.near
+        f32::from_bits(self.near.load(Relaxed))
     }
 
     /// Sets every pixel infinitely far.
@@ -179,12 +187,32 @@ impl MaskedOcclusionCulling {
     /// # Errors
     /// [`Error::NoBuffer`], [`Error::SizeMismatch`]; nothing is changed.
     pub fn merge_buffer(&mut self, other: &Self) -> Result<(), Error> {
-        let (mine, theirs) = (self.buffer.as_mut().ok_or(Error::NoBuffer)?, other.buffer()?);
-        if (mine.width(), mine.height(), self.y_axis) != (theirs.width(), theirs.height(), other.y_axis) {
-            return Err(Error::SizeMismatch);
-        }
-        crate::buffer::merge::merge(self.implementation, mine, theirs);
+        self.merge_buffers(&[other])
+    }
+
+    /// Folds several buffers into this one, with the result of folding them one by one in that order.
+    ///
+    /// # Errors
+    /// As [`Self::merge_buffer`]: where one does not fit, none is folded.
+    pub fn merge_buffers(&mut self, others: &[&Self]) -> Result<(), Error> {
+        let mine = self.buffer()?;
+        let theirs = self.mergeable(others)?;
+        // SAFETY: `&mut self`, and the others are borrowed.
+        unsafe { crate::buffer::merge::merge(self.implementation, mine, &theirs, mine.all_tiles()) };
         Ok(())
+    }
+
+    /// The buffers of others, if they can be folded into this one.
+    pub(crate) fn mergeable<'o>(&self, others: &[&'o Self]) -> Result<Vec<&'o Buffer>, Error> {
+        let mine = self.buffer()?;
+        let fitting = |other: &&'o Self| {
+            let theirs = other.buffer()?;
+            if (mine.width(), mine.height(), self.y_axis) != (theirs.width(), theirs.height(), other.y_axis) {
+                return Err(Error::SizeMismatch);
+            }
+            Ok(theirs)
+        };
+        others.iter().map(fitting).collect()
     }
 
     /// Draws occluders: three indices a triangle.
@@ -282,6 +310,11 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
+    /// The tiles that a rectangle touches; at least one.
+    pub(crate) fn rectangle_tiles(&self, [x_min, y_min, x_max, y_max]: [f32; 4]) -> Result<TileRect, Error> {
+        Ok(rectangle::tiles(self.buffer()?, self.y_axis, [x_min, y_min, x_max, y_max]))
+    }
+
     /// Projects triangles and appends each that may be drawn to the list of every bin that it reaches;
     /// `lists` are `bins_w * bins_h` bins, row by row.
     ///
@@ -355,6 +388,43 @@ impl MaskedOcclusionCulling {
         Ok(())
     }
 
+    /// Projects a mesh with this near plane and keeps what may be drawn; see [`pipeline::keep`].
+    ///
+    /// # Safety
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
+    pub(crate) unsafe fn keep(
+        &self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        options: &DrawOptions,
+        near: f32,
+        kept: &mut Kept,
+    ) -> Result<(), Error> {
+        let camera = self.camera_at(options, near)?;
+        let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract.
+        let tally = unsafe { pipeline::keep(self.implementation, self.buffer()?, &camera, &mesh, kept) };
+        self.counters.add_draw(self.statistics, &tally);
+        Ok(())
+    }
+
+    /// Draws what was kept; see [`pipeline::draw_kept`].
+    ///
+    /// # Safety
+    /// As there.
+    pub(crate) unsafe fn draw_kept<'a>(
+        &self,
+        kept: impl Iterator<Item = &'a Kept>,
+        clip: TileRect,
+        drawn: &mut u32,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's contract.
+        let tally = unsafe { pipeline::draw_kept(self.implementation, self.buffer()?, kept, clip, drawn) };
+        // A triangle is rasterized once, in however many pieces: that was counted when it was kept.
+        self.counters.add_draw(self.statistics, &Tally { rasterized: 0, ..tally });
+        Ok(())
+    }
+
     /// Writes the depth of every pixel to `depth`, width by height, row by row; negative where nothing
     /// was drawn. `flip_y` writes the last row first.
     ///
@@ -373,17 +443,21 @@ impl MaskedOcclusionCulling {
         self.counters.snapshot()
     }
 
-    fn buffer(&self) -> Result<&Buffer, Error> {
+    pub(crate) fn buffer(&self) -> Result<&Buffer, Error> {
         self.buffer.as_ref().ok_or(Error::NoBuffer)
     }
 
     fn camera(&self, options: &DrawOptions) -> Result<Camera, Error> {
-        let near = if options.clip_planes.contains(ClipPlanes::NEAR) { self.near } else { 0.0 };
+        self.camera_at(options, self.near_clip_plane())
+    }
+
+    fn camera_at(&self, options: &DrawOptions, near: f32) -> Result<Camera, Error> {
+        let near = if options.clip_planes.contains(ClipPlanes::NEAR) { near } else { 0.0 };
         let buffer = self.buffer()?;
         Ok(Camera::new(buffer.width(), buffer.height(), self.y_axis, near))
     }
 
-    fn check_mesh(&self, vertices: &Vertices<'_>, triangles: &[u32]) -> Result<(), Error> {
+    pub(crate) fn check_mesh(&self, vertices: &Vertices<'_>, triangles: &[u32]) -> Result<(), Error> {
         self.buffer()?;
         if !triangles.len().is_multiple_of(3) {
             return Err(Error::InvalidSize);

@@ -24,6 +24,7 @@ pub mod capi;
 mod culling;
 mod error;
 mod pipeline;
+mod pool;
 mod rectangle;
 mod simd;
 mod statistics;
@@ -35,6 +36,7 @@ pub use allocator::Allocator;
 pub use bins::TriList;
 pub use culling::{DrawOptions, MaskedOcclusionCulling, Settings};
 pub use error::Error;
+pub use pool::{CullingThreadpool, Scope};
 pub use transform::transform_vertices;
 pub use types::{
     BackfaceWinding, ClipPlanes, CullingResult, Implementation, OccludeeStatistics, OccluderStatistics, ScissorRect,

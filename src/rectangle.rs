@@ -3,7 +3,7 @@
 //! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their least depths,
 //! and only where that does not settle it, sub-tile by sub-tile with their layers.
 
-use crate::buffer::{Accurate, Buffer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, UNTOUCHED};
+use crate::buffer::{Accurate, Buffer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TileRect, UNTOUCHED};
 use crate::simd::{self, Job, Simd};
 use crate::statistics::Tally;
 use crate::{CullingResult, Implementation, UpdateRule, YAxis};
@@ -28,16 +28,23 @@ pub(crate) fn test(
     if x_max <= -1.0 || x_min >= 1.0 || y_max <= -1.0 || y_min >= 1.0 {
         return (CullingResult::ViewCulled, tally);
     }
-    let (row_min, row_max) = if y_axis == YAxis::Down { (-y_max, -y_min) } else { (y_min, y_max) };
-    let (x0, x1) = touched(x_min, x_max, buffer.width());
-    let (y0, y1) = touched(row_min, row_max, buffer.height());
     let depth = 1.0 / w_min * NEARER;
-    let pixels = Pixels { x0, y0, x1, y1 };
+    let pixels = Pixels::touched(buffer, y_axis, [x_min, y_min, x_max, y_max]);
     match buffer.rule() {
         UpdateRule::ThreeLayer => simd::run(implementation, Walk::<ThreeLayer>::new(buffer, pixels, depth)),
         UpdateRule::Quick => simd::run(implementation, Walk::<Quick>::new(buffer, pixels, depth)),
         UpdateRule::Accurate => simd::run(implementation, Walk::<Accurate>::new(buffer, pixels, depth)),
     }
+}
+
+/// The tiles that a rectangle touches, at least one; all of them where it is not a rectangle.
+pub(crate) fn tiles(buffer: &Buffer, y_axis: YAxis, [x_min, y_min, x_max, y_max]: [f32; 4]) -> TileRect {
+    // NaN fails every comparison.
+    if !(x_min <= x_max && y_min <= y_max) {
+        return buffer.all_tiles();
+    }
+    let p = Pixels::touched(buffer, y_axis, [x_min, y_min, x_max, y_max]);
+    TileRect { x0: p.x0 / TILE_WIDTH, y0: p.y0 / TILE_HEIGHT, x1: p.x1 / TILE_WIDTH + 1, y1: p.y1 / TILE_HEIGHT + 1 }
 }
 
 /// The first and last of `size` pixels across [-1, 1] that an interval touches. One that ends on a
@@ -62,6 +69,17 @@ struct Pixels {
     y0: u32,
     x1: u32,
     y1: u32,
+}
+
+impl Pixels {
+    /// Those on the screen that a rectangle touches, at least one; no edge is NaN.
+    #[inline(always)]
+    fn touched(buffer: &Buffer, y_axis: YAxis, [x_min, y_min, x_max, y_max]: [f32; 4]) -> Self {
+        let (row_min, row_max) = if y_axis == YAxis::Down { (-y_max, -y_min) } else { (y_min, y_max) };
+        let (x0, x1) = touched(x_min, x_max, buffer.width());
+        let (y0, y1) = touched(row_min, row_max, buffer.height());
+        Self { x0, y0, x1, y1 }
+    }
 }
 
 struct Walk<'a, R> {

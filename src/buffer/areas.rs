@@ -5,7 +5,7 @@
 //! a hidden triangle through, no more. Areas are therefore brought up to date only after so many tiles were drawn into,
 //! and only by whoever has the whole buffer to itself.
 
-use super::Buffer;
+use super::{Buffer, TileRect, UNTOUCHED};
 use crate::simd::{MAX_LANES, Simd};
 
 pub(crate) const AREA_TILES_W: u32 = 4;
@@ -22,55 +22,75 @@ pub(super) fn counts(tiles_w: u32, tiles_h: u32) -> (u32, u32) {
     (tiles_w.div_ceil(AREA_TILES_W), tiles_h.div_ceil(AREA_TILES_H))
 }
 
-/// Counts that so many more tiles, of a vector's height, were drawn into, and brings the areas up to date when there were
-/// enough.
+/// Nothing was drawn into a rectangle of tiles.
 ///
 /// # Safety
-/// Nobody else uses the buffer.
-#[inline(always)]
-pub(crate) unsafe fn drawn<S: Simd>(s: S, buffer: &Buffer, tiles: usize) {
-    // SAFETY: the caller's contract.
-    unsafe {
-        let sum = *buffer.drawn() + tiles as u32;
-        // As often as the work of it is small against that of the tiles: twice or half as often is alike.
-        if sum < buffer.tiles_w * buffer.tiles_h / 8 {
-            buffer.drawn().write(sum);
-            return;
+/// As [`refresh`].
+pub(super) unsafe fn clear(buffer: &Buffer, clip: TileRect) {
+    let (columns, rows) = (
+        clip.x0 / AREA_TILES_W..clip.x1.div_ceil(AREA_TILES_W),
+        clip.y0 / AREA_TILES_H..clip.y1.div_ceil(AREA_TILES_H),
+    );
+    for y in rows {
+        for x in columns.clone() {
+            // SAFETY: the caller's contract.
+            unsafe { buffer.areas().add((y * buffer.areas_w + x) as usize).write(UNTOUCHED) };
         }
-        buffer.drawn().write(0);
-        refresh(s, buffer);
     }
 }
 
-/// Brings the areas up to date.
+/// Counts that so many more tiles, of a vector's height, were drawn into inside of `clip`, and brings its areas up to date
+/// when there were enough.
 ///
 /// # Safety
-/// Nobody else uses the buffer.
+/// As [`refresh`].
 #[inline(always)]
-unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer) {
-    let (tiles_w, tiles_h) = (buffer.tiles_w as usize, buffer.tiles_h);
+pub(crate) unsafe fn drawn<S: Simd>(s: S, buffer: &Buffer, clip: TileRect, tiles: usize, count: &mut u32) {
+    *count += tiles as u32;
+    // As often as the work of it is small against that of the tiles: twice or half as often is alike.
+    if *count >= (clip.x1 - clip.x0) * (clip.y1 - clip.y0) / 8 {
+        *count = 0;
+        // SAFETY: the caller's contract.
+        unsafe { refresh(s, buffer, clip) };
+    }
+}
+
+/// Brings the areas of a rectangle of tiles up to date, which begins with an area and ends with one or at the buffer's end.
+///
+/// # Safety
+/// Nobody else uses its tiles and areas.
+#[inline(always)]
+unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
+    debug_assert!(clip.x0.is_multiple_of(AREA_TILES_W) && clip.y0.is_multiple_of(AREA_TILES_H));
+    let tiles = (clip.x1 - clip.x0) as usize;
+    let areas = tiles.div_ceil(AREA_TILES_W as usize);
     let mut row = [f32::MAX; ROW];
-    let mut area = buffer.areas();
-    for y0 in (0..tiles_h).step_by(AREA_TILES_H as usize) {
-        let y1 = (y0 + AREA_TILES_H).min(tiles_h);
-        for x in (0..tiles_w).step_by(S::LANES) {
+    for y0 in (clip.y0..clip.y1).step_by(AREA_TILES_H as usize) {
+        let y1 = (y0 + AREA_TILES_H).min(clip.y1);
+        for x in (0..tiles).step_by(S::LANES) {
             let mut least = s.f(f32::MAX);
             for y in y0..y1 {
-                // SAFETY: a tile of the buffer, and after the last there is room for a vector.
-                least = s.min(least, unsafe { s.load_f(buffer.least_of(x as u32, y)) });
+                // SAFETY: tiles of the rectangle, and no others: beside them another thread may be writing.
+                let of_row = unsafe { s.load_some(buffer.least_of(clip.x0 + x as u32, y).cast(), tiles - x) };
+                least = s.min(least, s.float_of_bits(of_row));
             }
-            let least = s.select(s.first(tiles_w - x), least, s.f(f32::MAX));
+            let least = s.select(s.first(tiles - x), least, s.f(f32::MAX));
             // SAFETY: the array has room for a vector after the last tile of the widest row.
             unsafe { s.store_f(row.as_mut_ptr().add(x), least) };
         }
-        for x in (0..tiles_w).step_by(S::LANES * AREA_TILES_W as usize) {
-            // SAFETY: there is room for four vectors in the array, and for one after the last area.
+        let to = buffer.areas().wrapping_add((y0 / AREA_TILES_H * buffer.areas_w + clip.x0 / AREA_TILES_W) as usize);
+        for k in (0..areas).step_by(S::LANES) {
+            let mut least = [0.0; MAX_LANES];
+            // SAFETY: there is room for four vectors in the one array, for a vector in the other.
             unsafe {
-                let [a, b, c, d] = s.load_quads(row.as_ptr().add(x));
-                s.store_f(area.add(x / AREA_TILES_W as usize), s.min(s.min(a, b), s.min(c, d)));
+                let [a, b, c, d] = s.load_quads(row.as_ptr().add(k * AREA_TILES_W as usize));
+                s.store_f(least.as_mut_ptr(), s.min(s.min(a, b), s.min(c, d)));
+            }
+            for (lane, &least) in least[..S::LANES.min(areas - k)].iter().enumerate() {
+                // SAFETY: an area of the rectangle.
+                unsafe { to.add(k + lane).write(least) };
             }
         }
-        area = area.wrapping_add(buffer.areas_w as usize);
     }
 }
 
@@ -87,7 +107,7 @@ mod tests {
 
         fn run<S: Simd>(self, s: S) {
             // SAFETY: the test has the buffer to itself.
-            unsafe { refresh(s, self.0) }
+            unsafe { refresh(s, self.0, self.0.all_tiles()) }
         }
     }
 
@@ -96,7 +116,7 @@ mod tests {
         let mut random = fastrand::Rng::with_seed(1);
         for &implementation in simd::available() {
             for (width, height) in [(1, 1), (33, 9), (1920, 1080), (2050, 70), (16_384, 8), (40, 16_384)] {
-                let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::default(), false).unwrap();
+                let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
                 let (tiles_w, tiles_h) = (buffer.tiles_w, buffer.tiles_h);
                 // SAFETY (of both blocks): tiles and areas of a buffer that nobody else has.
                 let least = |x, y| unsafe { *buffer.least_of(x, y) };

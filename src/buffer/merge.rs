@@ -2,19 +2,23 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, Touched, choose, load};
+use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, TileRect, Touched, choose, load};
 use crate::simd::{self, Job, Simd};
 use crate::{Implementation, UpdateRule};
 
-/// The two are of the same size, checked by the caller.
-pub(crate) fn merge(implementation: Implementation, into: &mut Buffer, from: &Buffer) {
-    assert_eq!((into.width(), into.height()), (from.width(), from.height()));
-    simd::run(implementation, Merge { into, from });
+/// Folds buffers into another, one after the other, inside of a rectangle of tiles that begins and ends with blocks or at the
+/// buffer's end. All are of the same size, checked by the caller.
+///
+/// # Safety
+/// Nobody else uses the rectangle's tiles of `into`, and nobody draws into the others.
+pub(crate) unsafe fn merge(implementation: Implementation, into: &Buffer, from: &[&Buffer], clip: TileRect) {
+    simd::run(implementation, Merge { into, from, clip });
 }
 
 struct Merge<'a> {
-    into: &'a mut Buffer,
-    from: &'a Buffer,
+    into: &'a Buffer,
+    from: &'a [&'a Buffer],
+    clip: TileRect,
 }
 
 impl Job for Merge<'_> {
@@ -22,15 +26,29 @@ impl Job for Merge<'_> {
 
     #[inline(always)]
     fn run<T: Simd>(self, s: T) {
-        match self.into.rule() {
-            UpdateRule::ThreeLayer => self.into_rule::<T, ThreeLayer>(s),
-            UpdateRule::Quick => self.into_rule::<T, Quick>(s),
-            UpdateRule::Accurate => self.into_rule::<T, Accurate>(s),
+        // A row of all of them, then the next: what is folded into stays in the first cache.
+        for y in (self.clip.y0..self.clip.y1).step_by(T::LANES / SUB_TILES) {
+            for from in self.from {
+                let row = Row { into: self.into, from, columns: self.clip.x0..self.clip.x1, y };
+                match self.into.rule() {
+                    UpdateRule::ThreeLayer => row.into_rule::<T, ThreeLayer>(s),
+                    UpdateRule::Quick => row.into_rule::<T, Quick>(s),
+                    UpdateRule::Accurate => row.into_rule::<T, Accurate>(s),
+                }
+            }
         }
     }
 }
 
-impl Merge<'_> {
+/// A row of tiles, of a vector's height.
+struct Row<'a> {
+    into: &'a Buffer,
+    from: &'a Buffer,
+    columns: core::ops::Range<u32>,
+    y: u32,
+}
+
+impl Row<'_> {
     #[inline(always)]
     fn into_rule<T: Simd, R: Rule>(self, s: T) {
         match self.from.rule() {
@@ -42,13 +60,12 @@ impl Merge<'_> {
 
     #[inline(always)]
     fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
-        let Self { into, from } = self;
-        let tiles = into.all_tiles();
+        let Self { into, from, columns, y } = self;
         let alike = into.rule() == from.rule();
-        for y in (0..tiles.y1).step_by(T::LANES / SUB_TILES) {
-            for x in 0..tiles.x1 {
+        {
+            for x in columns {
                 // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at
-                // once, `y` is the block's; `into` is exclusive, `from` is not written while it is borrowed; both were
+                // once, `y` is the block's; the caller vouches for who else uses them; both were
                 // made for their rules.
                 unsafe {
                     let other = TilePlace::new(from, x, y);

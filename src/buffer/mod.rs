@@ -145,6 +145,22 @@ impl Buffer {
         unsafe { self.drawn().write(0) };
     }
 
+    /// Clears a rectangle of tiles that begins with an area and ends with one or at the buffer's end.
+    ///
+    /// # Safety
+    /// Nobody else uses its tiles and areas.
+    pub unsafe fn clear_tiles(&self, clip: TileRect) {
+        // Blocks are whole: the lower tiles of the last may lie below the screen.
+        for y in clip.y0..clip.y1.next_multiple_of(2) {
+            for x in clip.x0..clip.x1 {
+                // SAFETY: the caller's contract.
+                unsafe { self.least_of(x, y).write(UNTOUCHED) };
+            }
+        }
+        // SAFETY: the caller's contract.
+        unsafe { areas::clear(self, clip) };
+    }
+
     pub fn bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
         let of = |size: u32, bins: u32, tile: u32| match size.checked_div(bins) {
             Some(bin) if bin >= tile => Ok(bin / tile * tile),

@@ -1,7 +1,7 @@
 //! What changes the buffer: clearing, merging, drawing triangles and lists.
 
 use super::mesh::MeshArguments;
-use super::pointers::{object, object_mut, read};
+use super::pointers::{object, object_mut, objects, read};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
 use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
@@ -39,6 +39,32 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
         // SAFETY: the caller's contract, and the two are not the same.
         let (moc, other) = unsafe { (object_mut(moc)?, object(other)?) };
         moc.merge_buffer(other)
+    })
+}
+
+/// Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
+/// faster. `others` may name an object more than once, and `moc` itself not.
+///
+/// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array, MOC_STATUS_INVALID_ENUM where it names
+/// `moc`: nothing is folded.
+///
+/// # Safety
+/// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
+/// thread uses `moc` meanwhile, and none changes the others.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_MergeBuffers(
+    moc: *mut MaskedOcclusionCulling,
+    others: *const *const MaskedOcclusionCulling,
+    count: u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let others = unsafe { objects(others, count) }?;
+        if others.iter().any(|&other| core::ptr::eq(other, moc)) {
+            return Err(Error::InvalidEnum);
+        }
+        // SAFETY: the caller's contract, and none of the others is the same.
+        unsafe { object_mut(moc) }?.merge_buffers(&others)
     })
 }
 

@@ -16,6 +16,21 @@ pub(super) unsafe fn object_mut<'a>(moc: *mut MaskedOcclusionCulling) -> Result<
     unsafe { moc.as_mut() }.ok_or(Error::NullPointer)
 }
 
+/// An array of objects.
+///
+/// # Safety
+/// `objects` is null or can be read for `count` pointers, each null or from `MOC_Create` and not destroyed, and nobody
+/// changes the objects meanwhile.
+pub(super) unsafe fn objects<'a>(
+    objects: *const *const MaskedOcclusionCulling,
+    count: u32,
+) -> Result<Vec<&'a MaskedOcclusionCulling>, Error> {
+    // SAFETY: the caller's contract.
+    let pointers = unsafe { slice(objects, count as usize) }?;
+    // SAFETY: the caller's contract.
+    pointers.iter().map(|&moc| unsafe { object(moc) }).collect()
+}
+
 /// `len` elements from `data`, which may be null when there are none.
 ///
 /// # Safety

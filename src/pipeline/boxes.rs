@@ -6,8 +6,8 @@
 
 use super::setup::Purpose;
 use super::survivors::Corner;
-use crate::buffer::Buffer;
 use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
+use crate::buffer::{Buffer, TileRect};
 use crate::simd::Simd;
 
 /// How far, in 1/256 pixel, a snapped vertex of a query may be from the true one, and a little.
@@ -59,21 +59,35 @@ impl<S: Simd> Boxes<S> {
         }
     }
 
-    /// Boxes that nothing at `nearest` or farther shows in.
+    /// Boxes that show nothing at `nearest` or farther inside of a rectangle of tiles, or have nothing there. `with_areas`: the
+    /// areas of the rectangle may be looked at, too.
     ///
-    /// How current the areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
+    /// How current areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
     /// would tell, and it leaves them out.
     ///
     /// # Safety
-    /// Nobody else uses the buffer, or, for a query, nobody draws into it.
+    /// Nobody else writes to the tiles and areas of the rectangle.
     #[inline(always)]
-    pub unsafe fn hidden(&self, s: S, buffer: &Buffer, purpose: Purpose, nearest: S::F) -> S::M {
-        let &Self { tile_x0: x0, tile_x1: x1, tile_y0: y0, tile_y1: y1, inside, .. } = self;
+    pub unsafe fn hidden(
+        &self,
+        s: S,
+        buffer: &Buffer,
+        (clip, with_areas): (TileRect, bool),
+        purpose: Purpose,
+        nearest: S::F,
+    ) -> S::M {
+        let mut inside = self.inside;
+        let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
+        if clip != buffer.all_tiles() {
+            (x0, x1) = (s.max_i(x0, s.i(clip.x0 as i32)), s.min_i(x1, s.i(clip.x1 as i32 - 1)));
+            (y0, y1) = (s.max_i(y0, s.i(clip.y0 as i32)), s.min_i(y1, s.i(clip.y1 as i32 - 1)));
+            inside = s.and_not_m(s.or_m(s.gt_i(x0, x1), s.gt_i(y0, y1)), inside);
+        }
         let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
         let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
         let (mut few, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
         let (mut left, mut right, mut top, mut bottom) = (x0, x1, y0, y1);
-        if purpose != Purpose::Query && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
+        if with_areas && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
             let or_area = |tile: S::I, area: S::I| s.select_i(tiles, tile, area);
             left = or_area(x0, s.sra::<AREA_COLUMN_SHIFT>(x0));
             right = or_area(x1, s.sra::<AREA_COLUMN_SHIFT>(x1));
@@ -86,10 +100,11 @@ impl<S: Simd> Boxes<S> {
         // Exact: there are at most 2^20 tiles.
         let row = |y: S::I| s.add_i(first, s.round(s.mul(s.to_f(y), pitch)));
         let (top, bottom) = (row(top), row(bottom));
-        // SAFETY: a box that holds a pixel names tiles or areas of the buffer, the other lanes name the first tile.
-        let at = |row: S::I, x: S::I| unsafe { s.gather(buffer.least(), s.select_i(few, s.add_i(row, x), s.i(0))) };
+        let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
+        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile.
+        let at = |row: S::I, x: S::I| unsafe { s.gather(buffer.least(), s.select_i(few, s.add_i(row, x), any)) };
         let least = s.min(s.min(at(top, left), at(top, right)), s.min(at(bottom, left), at(bottom, right)));
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        s.and_m(few, hidden)
+        s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))
     }
 }

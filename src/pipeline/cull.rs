@@ -41,7 +41,14 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: facing.both, shared: false };
+    let setup = Setup {
+        s,
+        purpose: L::PURPOSE,
+        buffer,
+        both_sides: facing.both,
+        clip: buffer.all_tiles(),
+        areas: L::PURPOSE == Purpose::Draw,
+    };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);

@@ -81,20 +81,24 @@ pub(super) struct Draw<'a, T> {
     buffer: &'a Buffer,
     clip: TileRect,
     lists: MaybeUninit<Lists>,
-    /// Nobody else draws elsewhere in the buffer.
-    alone: bool,
+    /// How many tiles were drawn into since the clip's areas were brought up to date, if that is done.
+    drawn: Option<&'a mut u32>,
 }
 
 impl<'a, T: Simd> Draw<'a, T> {
+    /// # Safety
+    /// Nobody else uses the buffer.
     #[inline(always)]
-    pub fn new(t: T, buffer: &'a Buffer) -> Self {
-        Self { alone: true, ..Self::inside(t, buffer, buffer.all_tiles()) }
+    pub unsafe fn new(t: T, buffer: &'a Buffer) -> Self {
+        // SAFETY: the caller's contract.
+        let drawn = unsafe { &mut *buffer.drawn() };
+        Self::inside(t, buffer, buffer.all_tiles(), Some(drawn))
     }
 
     #[inline(always)]
-    pub fn inside(t: T, buffer: &'a Buffer, clip: TileRect) -> Self {
+    pub fn inside(t: T, buffer: &'a Buffer, clip: TileRect, drawn: Option<&'a mut u32>) -> Self {
         const { assert!(T::LANES.is_multiple_of(SUB_TILES)) }
-        Self { t, buffer, clip, lists: Lists::new(), alone: false }
+        Self { t, buffer, clip, lists: Lists::new(), drawn }
     }
 }
 
@@ -119,7 +123,7 @@ impl<T: Simd> Draw<'_, T> {
     /// Updates the tiles of triangles. If `COUNT`: how many, and in how many the reference depth rose.
     #[inline(always)]
     fn update<const COUNT: bool>(&mut self, batch: &Batch, alive: &Alive) -> (u64, u64) {
-        let &mut Self { t, buffer, clip, ref mut lists, alone } = self;
+        let &mut Self { t, buffer, clip, ref mut lists, ref mut drawn } = self;
         // Apart: what comes before does not depend on the rule, and is compiled once for all three.
         let way = Way { buffer, clip, batch, alive, lists };
         let (counts, tiles) = match buffer.rule() {
@@ -129,9 +133,9 @@ impl<T: Simd> Draw<'_, T> {
             UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, COUNT>::new(buffer) }).1.done(),
             UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, COUNT>::new(buffer) }).1.done(),
         };
-        if alone {
-            // SAFETY: nobody else uses the buffer.
-            unsafe { areas::drawn(t, buffer, tiles) };
+        if let Some(count) = drawn {
+            // SAFETY: nobody else uses the clip's tiles.
+            unsafe { areas::drawn(t, buffer, clip, tiles, count) };
         }
         counts
     }

@@ -6,18 +6,24 @@ use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::setup::Setup;
 use super::survivors::{ROOM, Survivors};
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
-use crate::buffer::Buffer;
+use crate::buffer::{Buffer, TileRect};
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
 /// Draws the triangles of a list.
 #[inline(always)]
-pub(super) fn draw<S: Simd, L: LastStep>(s: S, buffer: &Buffer, list: &TriList<'_>, last: &mut L) -> Tally {
+pub(super) fn draw<S: Simd, L: LastStep>(
+    s: S,
+    buffer: &Buffer,
+    list: &TriList<'_>,
+    clip: TileRect,
+    last: &mut L,
+) -> Tally {
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
     // The corners were put in order when the list was filled.
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, shared: true };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, clip, areas: false };
     let mut tally = Tally { processed: list.len() as u64, ..Tally::default() };
     let mut position = 0;
     while position < list.len() {

@@ -22,6 +22,7 @@ mod chunk;
 mod clip;
 mod cull;
 mod edges;
+mod kept;
 mod last_step;
 mod list;
 mod pages;
@@ -40,6 +41,8 @@ use crate::statistics::Tally;
 use crate::vertices::VertexSource;
 use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation};
 
+use kept::Keep;
+pub(crate) use kept::Kept;
 use last_step::{Bins, Draw, Query};
 pub(crate) use project::{Camera, transform};
 
@@ -131,13 +134,42 @@ pub(crate) unsafe fn draw_list(
     simd::run(implementation, DrawList { buffer, list, scissor })
 }
 
+/// Projects a mesh and keeps what may be drawn, after what was kept before.
+///
+/// # Safety
+/// Every vertex from the lowest to the highest that the mesh names can be read.
+pub(crate) unsafe fn keep(
+    implementation: Implementation,
+    buffer: &Buffer,
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+    kept: &mut Kept,
+) -> Tally {
+    simd::run(implementation, KeepMesh { buffer, camera, mesh, kept })
+}
+
+/// Draws what was kept, in order, inside of a rectangle of tiles that begins with an area and ends with one or at the
+/// buffer's end. `drawn` counts for the rectangle when its areas are due.
+///
+/// # Safety
+/// Nobody else uses the rectangle's tiles and areas.
+pub(crate) unsafe fn draw_kept<'a>(
+    implementation: Implementation,
+    buffer: &Buffer,
+    kept: impl Iterator<Item = &'a Kept>,
+    clip: TileRect,
+    drawn: &mut u32,
+) -> Tally {
+    simd::run(implementation, DrawKept { buffer, kept, clip, drawn })
+}
+
 /// The largest of the indices.
 pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Option<u32> {
     (!indices.is_empty()).then(|| simd::run(implementation, chunk::IndexRange(indices)).1)
 }
 
 macro_rules! mesh_job {
-    ($job:ident, $last_step:ident) => {
+    ($job:ident, $last_step:expr) => {
         struct $job<'a> {
             buffer: &'a Buffer,
             camera: &'a Camera,
@@ -149,15 +181,16 @@ macro_rules! mesh_job {
 
             #[inline(always)]
             fn run<S: Simd>(self, s: S) -> Self::Output {
-                let mut last = $last_step::new(s, self.buffer);
+                let mut last = $last_step(s, self.buffer);
                 cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
             }
         }
     };
 }
 
-mesh_job!(DrawMesh, Draw);
-mesh_job!(TestMesh, Query);
+// SAFETY: the caller of `draw` vouches for the buffer.
+mesh_job!(DrawMesh, |s, buffer| unsafe { Draw::new(s, buffer) });
+mesh_job!(TestMesh, Query::new);
 
 struct BinMesh<'a, 'b, 'c> {
     buffer: &'a Buffer,
@@ -190,7 +223,41 @@ impl Job for DrawList<'_, '_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Tally {
-        let mut last = Draw::inside(s, self.buffer, self.scissor);
-        list::draw(s, self.buffer, self.list, &mut last)
+        let mut last = Draw::inside(s, self.buffer, self.scissor, None);
+        list::draw(s, self.buffer, self.list, self.scissor, &mut last)
+    }
+}
+
+struct KeepMesh<'a> {
+    buffer: &'a Buffer,
+    camera: &'a Camera,
+    mesh: &'a Mesh<'a>,
+    kept: &'a mut Kept,
+}
+
+impl Job for KeepMesh<'_> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Tally {
+        let mut last = Keep::new(s, self.kept);
+        cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last).1
+    }
+}
+
+struct DrawKept<'a, I> {
+    buffer: &'a Buffer,
+    kept: I,
+    clip: TileRect,
+    drawn: &'a mut u32,
+}
+
+impl<'k, I: Iterator<Item = &'k Kept>> Job for DrawKept<'_, I> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Tally {
+        let mut last = Draw::inside(s, self.buffer, self.clip, Some(self.drawn));
+        kept::draw(s, self.buffer, self.kept, self.clip, &mut last)
     }
 }

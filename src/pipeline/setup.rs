@@ -22,7 +22,7 @@ use super::batch::Batch;
 use super::boxes::{Boxes, QUERY_SLACK};
 use super::edges;
 use super::survivors::Corner;
-use crate::buffer::Buffer;
+use crate::buffer::{Buffer, TileRect};
 use crate::simd::Simd;
 
 /// Beyond this, in 1/256 pixel, edges are set up one by one.
@@ -61,8 +61,10 @@ pub(super) struct Setup<'a, S> {
     pub buffer: &'a Buffer,
     /// Corners may be in either order.
     pub both_sides: bool,
-    /// Other threads may be drawing elsewhere in the buffer: none of it is looked at.
-    pub shared: bool,
+    /// The tiles that the last step takes; elsewhere other threads may be drawing.
+    pub clip: TileRect,
+    /// Are their areas kept up to date?
+    pub areas: bool,
 }
 
 /// Sets up the triangles in `active`; the others may be anything.
@@ -73,15 +75,15 @@ pub(super) fn set_up<S: Simd>(
     active: S::M,
     batch: &mut Batch,
 ) -> Alive {
-    let Setup { s, purpose, buffer, both_sides, shared } = setup;
+    let Setup { s, purpose, buffer, both_sides, clip, areas } = setup;
     let query = purpose == Purpose::Query;
     let boxes = Boxes::new(s, buffer, purpose, &[a, b, c]);
     let inside = s.and_m(active, boxes.inside);
     let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
     let mut hidden = 0;
-    if purpose != Purpose::Bin && !shared {
+    if purpose != Purpose::Bin {
         // SAFETY: the pipeline's caller vouches for the buffer.
-        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, purpose, nearest) });
+        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, (clip, areas), purpose, nearest) });
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();

@@ -318,7 +318,8 @@ impl<'a> Strips<'a> {
                 let least = buffer.least().add((index + (first & LOW)) as usize);
                 let inside = t.first(count as usize);
                 let of = |p: *const f32| {
-                    if whole { t.load_f(p) } else { some_of(t, p, count) }
+                    // Beside the clip's tiles another thread may be writing.
+                    if whole { t.load_f(p) } else { t.float_of_bits(t.load_some(p.cast(), count as usize)) }
                 };
                 let mut open = S::open(t, of(least), t.f(lists.upper.get_unchecked(k).assume_init()));
                 if height::<T>() == 2 {
@@ -369,19 +370,4 @@ impl<T: Simd> Span<T> {
         let high = t.add(t.add(constant, t.max(first, last)), widen);
         [low, high]
     }
-}
-
-/// The first `n` floats from `p` on, and nothing else: beside them another thread may be writing.
-///
-/// # Safety
-/// They can be read.
-#[inline(always)]
-unsafe fn some_of<T: Simd>(t: T, p: *const f32, n: u32) -> T::F {
-    let mut lanes = [0.0; MAX_LANES];
-    for k in 0..T::LANES.min(n as usize) {
-        // SAFETY: the caller's contract.
-        lanes[k] = unsafe { *p.add(k) };
-    }
-    // SAFETY: the array holds a vector.
-    unsafe { t.load_f(lanes.as_ptr()) }
 }

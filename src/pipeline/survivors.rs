@@ -34,6 +34,16 @@ impl Survivors {
         }
     }
 
+    /// None yet, on the heap, all of it zeros.
+    pub fn boxed() -> Box<Self> {
+        // SAFETY: zeros are a length and floats.
+        unsafe { Box::<Self>::new_zeroed().assume_init() }
+    }
+
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
@@ -81,6 +91,15 @@ impl Survivors {
             }
         }
         // SAFETY: there is room for a vector after the last triangle, and what comes there was just written.
+        let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
+        [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
+    }
+
+    /// The same for one from [`Self::boxed`]; what comes after the last may be anything.
+    #[inline(always)]
+    pub fn loaded<S: Simd>(&self, s: S, first: usize) -> [Corner<S>; 3] {
+        assert!(first < self.len && self.len <= ROOM);
+        // SAFETY: there is room for a vector after the last triangle; all was written when the box was made.
         let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
         [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
     }

@@ -1,0 +1,379 @@
+//! The pool of threads.
+
+use core::ptr::NonNull;
+use std::sync::{Mutex, PoisonError};
+
+use super::mesh::MeshArguments;
+use super::pointers::{check_out, objects, read, slice_mut, write};
+use super::status::{MOC_Status, guard, guard_result};
+use super::types::{self, MOC_VertexLayout};
+use crate::{CullingThreadpool, Error, MaskedOcclusionCulling};
+
+/// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
+pub struct MOC_Threadpool {
+    pool: CullingThreadpool,
+    /// What the next calls are drawn with.
+    state: Mutex<State>,
+}
+
+#[derive(Clone, Copy)]
+struct State {
+    matrix: Option<[f32; 16]>,
+    layout: MOC_VertexLayout,
+}
+
+/// x, y, z, w.
+const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, offset_zw: 12 };
+
+impl MOC_Threadpool {
+    fn state(&self) -> State {
+        *self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+/// # Safety
+/// Null or from `MOC_ThreadpoolCreate` and not destroyed.
+unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Error> {
+    // SAFETY: the caller's contract.
+    unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
+}
+
+/// Makes a pool of `threads` threads and writes it to `out` (null there on errors). The threads sleep until
+/// MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+///
+/// Calls that draw return at once. The threads draw in `bins_w` by `bins_h` pieces of the screen (several for each
+/// thread are good; they are not smaller than 128x64 pixels, so that there may be fewer), in each in the order in
+/// which the calls came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
+/// in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
+///
+/// Several threads may submit and query at once.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0,
+/// MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
+///
+/// # Safety
+/// `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolCreate(
+    threads: u32,
+    bins_w: u32,
+    bins_h: u32,
+    max_jobs: u32,
+    out: *mut *mut MOC_Threadpool,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, core::ptr::null_mut()) };
+        let pool = CullingThreadpool::new(threads, bins_w, bins_h, max_jobs)?;
+        let state = Mutex::new(State { matrix: None, layout: PACKED });
+        // SAFETY: as above.
+        unsafe { write(out, Box::into_raw(Box::new(MOC_Threadpool { pool, state }))) };
+        Ok(())
+    })
+}
+
+/// Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
+/// allowed.
+///
+/// # Safety
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
+/// last MOC_ThreadpoolFlush can still be read, and the object is still there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC_Status {
+    guard(|| {
+        if !pool.is_null() {
+            // SAFETY: not null, and the caller's contract.
+            drop(unsafe { Box::from_raw(pool) });
+        }
+        Ok(())
+    })
+}
+
+/// Lets the threads work. A second time changes nothing.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| Ok(unsafe { handle(pool) }?.pool.wake_threads()))
+}
+
+/// Lets each thread sleep as soon as it has finished what it is at. Calls are taken in meanwhile, and whoever flushes
+/// does the work.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpool) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| Ok(unsafe { handle(pool) }?.pool.suspend_threads()))
+}
+
+/// Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
+/// and, while nobody submits, the object may be used directly.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| Ok(unsafe { handle(pool) }?.pool.flush()))
+}
+
+/// Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. A near plane that was set on the pool
+/// becomes the object's.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
+/// the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
+/// submits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
+    pool: *const MOC_Threadpool,
+    moc: *mut MaskedOcclusionCulling,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| Ok(unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) }))
+}
+
+/// MOC_SetResolution of the pool's object, after what was submitted is drawn.
+///
+/// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
+    pool: *const MOC_Threadpool,
+    width: u32,
+    height: u32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool) }?.pool.set_resolution(width, height))
+}
+
+/// Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
+}
+
+/// Sets the matrix of the calls that follow, which is copied; null: none. Threads that submit share it.
+///
+/// Errors: MOC_STATUS_NULL_POINTER for the pool.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, model_to_clip: *const f32) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, matrix) = unsafe { (handle(pool)?, read(model_to_clip.cast::<[f32; 16]>())) };
+        pool.change(|state| state.matrix = matrix);
+        Ok(())
+    })
+}
+
+/// Sets the vertex layout of the calls that follow; null: x, y, z, w packed. Threads that submit share it.
+///
+/// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
+    pool: *const MOC_Threadpool,
+    layout: *const MOC_VertexLayout,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
+        let layout = layout.unwrap_or(PACKED);
+        if layout.stride < 0 {
+            return Err(Error::InvalidLayout);
+        }
+        pool.change(|state| state.layout = layout);
+        Ok(())
+    })
+}
+
+/// Clears the object's buffer, in order with the calls around it. From now on nothing that was drawn before hides anything.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
+}
+
+/// Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once; see
+/// MOC_RenderTriangles.
+///
+/// Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
+/// are until MOC_ThreadpoolFlush.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    winding: i32,
+    clip_planes: i32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let handle = unsafe { handle(pool) }?;
+        let state = handle.state();
+        let mesh = state.mesh(vertices, triangles, n_triangles, winding, clip_planes);
+        // SAFETY: the caller's contract.
+        let mesh = handle.pool.with_object(|moc| unsafe { mesh.check(moc) })?;
+        // SAFETY: the caller's contract.
+        unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    })
+}
+
+impl State {
+    fn mesh(
+        &self,
+        vertices: *const f32,
+        triangles: *const u32,
+        n_triangles: i32,
+        winding: i32,
+        clip_planes: i32,
+    ) -> MeshArguments {
+        let model_to_clip = self.matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr());
+        let layout = &raw const self.layout;
+        let vertex_floats = None;
+        MeshArguments { vertices, vertex_floats, triangles, n_triangles, model_to_clip, winding, clip_planes, layout }
+    }
+}
+
+/// MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
+    pool: *const MOC_Threadpool,
+    xmin: f32,
+    ymin: f32,
+    xmax: f32,
+    ymax: f32,
+    wmin: f32,
+    result: *mut i32,
+) -> MOC_Status {
+    let query = || {
+        check_out(result)?;
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin)
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// MOC_TestTriangles against what is drawn by now, with the matrix, vertex layout and near plane that are set.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    winding: i32,
+    clip_planes: i32,
+    result: *mut i32,
+) -> MOC_Status {
+    let query = || {
+        // SAFETY: the caller's contract.
+        let handle = unsafe { handle(pool) }?;
+        let state = handle.state();
+        let mesh = state.mesh(vertices, triangles, n_triangles, winding, clip_planes);
+        // SAFETY: the caller's contract.
+        let mesh = handle.pool.with_object(|moc| unsafe { mesh.check(moc) })?;
+        // SAFETY: the caller's contract.
+        unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
+    pool: *const MOC_Threadpool,
+    out: *mut f32,
+    flip_y: i32,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: the caller's contract.
+        let pool = &unsafe { handle(pool) }?.pool;
+        let flip = types::flag(flip_y)?;
+        pool.with_pixels(
+            |pixels| {
+                // SAFETY: the caller's contract.
+                unsafe { slice_mut(out, pixels) }
+            },
+            flip,
+        )
+    })
+}
+
+/// Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
+/// MOC_MergeBuffers: each thread takes pieces of the screen.
+///
+/// Errors: as there; nothing is folded.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. None of the others is the pool's object, and nobody changes or destroys them
+/// until MOC_ThreadpoolFlush.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
+    pool: *const MOC_Threadpool,
+    others: *const *const MaskedOcclusionCulling,
+    count: u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
+        // SAFETY: the caller's contract.
+        unsafe { pool.pool.merge_buffers(&others) }
+    })
+}

@@ -1,0 +1,190 @@
+//! The threads of a pool: take work, do it, sleep when there is none.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use super::schedule::{Schedule, Task};
+use super::target::{Call, Target, Work};
+use crate::pipeline::Kept;
+
+/// What threads share.
+pub(super) struct Crew {
+    state: Mutex<State>,
+    /// There may be work.
+    work: Condvar,
+    /// Something was finished.
+    progress: Condvar,
+}
+
+struct State {
+    schedule: Schedule<Call, Arc<Work>>,
+    target: Option<Arc<Target>>,
+    /// Memory to be used again.
+    spare: Vec<Kept>,
+    /// Threads that wait for work, and threads that wait for progress.
+    idle: usize,
+    waiting: usize,
+    suspended: bool,
+    stopped: bool,
+}
+
+impl Crew {
+    pub fn new(max_batches: usize) -> Self {
+        let schedule = Schedule::new(1, max_batches);
+        let state =
+            State { schedule, target: None, spare: Vec::new(), idle: 0, waiting: 0, suspended: true, stopped: false };
+        Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        // Nothing panics while it holds the lock; if it did, the state would still be sound.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The way of a thread of the pool, until [`Self::stop`].
+    pub fn work(&self, number: usize) {
+        let mut bin = number;
+        let mut state = self.lock();
+        while !state.stopped {
+            let task = if state.suspended { None } else { state.schedule.claim(bin) };
+            state = match task {
+                Some(task) => self.perform(state, task, &mut bin),
+                None => {
+                    state.idle += 1;
+                    let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
+                    state.idle -= 1;
+                    state
+                }
+            };
+        }
+    }
+
+    /// Does a task, outside of the lock.
+    fn perform<'a>(
+        &'a self,
+        mut state: MutexGuard<'a, State>,
+        task: Task<Call, Arc<Work>>,
+        last_bin: &mut usize,
+    ) -> MutexGuard<'a, State> {
+        if state.idle > 0 && !state.suspended && state.schedule.has_work() {
+            // Each wakes the next, so that submitting wakes one at most.
+            self.work.notify_one();
+        }
+        let target = state.target.clone();
+        // A panic would be a bug of ours; then occluders are missing, which is safe, and nobody waits in vain.
+        match task {
+            Task::Keep { batch, calls } => {
+                let mut kept = state.spare.pop().unwrap_or_default();
+                drop(state);
+                let keep = || {
+                    if let Some(target) = &target {
+                        // SAFETY: who submitted the calls vouches for them until the pool was flushed, which waits for this.
+                        unsafe { target.keep(&calls, &mut kept) };
+                    }
+                };
+                if catch_unwind(AssertUnwindSafe(keep)).is_err() {
+                    kept.clear();
+                }
+                drop(target);
+                state = self.lock();
+                state.schedule.kept(batch, Arc::new(Work::Triangles(kept)));
+            }
+            Task::Draw { bin, work } => {
+                *last_bin = bin;
+                drop(state);
+                let draw = || {
+                    if let Some(target) = &target {
+                        target.draw(bin, &work);
+                    }
+                };
+                // What it was is told by the panic's own message.
+                let _ = catch_unwind(AssertUnwindSafe(draw));
+                let count = work.len();
+                drop((work, target));
+                state = self.lock();
+                let State { schedule, spare, .. } = &mut *state;
+                schedule.drawn(bin, count, |work| {
+                    if let Ok(Work::Triangles(kept)) = Arc::try_unwrap(work) {
+                        spare.push(kept);
+                    }
+                });
+            }
+        }
+        if state.waiting > 0 {
+            self.progress.notify_all();
+        }
+        state
+    }
+
+    /// Does a task or waits until somebody did one.
+    fn help_or_wait<'a>(&'a self, mut state: MutexGuard<'a, State>, help: bool) -> MutexGuard<'a, State> {
+        if help && let Some(task) = state.schedule.claim(0) {
+            return self.perform(state, task, &mut 0);
+        }
+        state.waiting += 1;
+        let mut state = self.progress.wait(state).unwrap_or_else(PoisonError::into_inner);
+        state.waiting -= 1;
+        state
+    }
+
+    /// Hands in a call. Where there is no room, the caller works until there is.
+    pub fn submit(&self, mut call: Call) {
+        let weight = call.indices / 3;
+        let mut state = self.lock();
+        loop {
+            match state.schedule.submit(call, weight) {
+                Ok(worthwhile) => {
+                    if worthwhile && state.idle > 0 && !state.suspended {
+                        self.work.notify_one();
+                    }
+                    return;
+                }
+                Err(back) => call = back,
+            }
+            state = self.help_or_wait(state, true);
+        }
+    }
+
+    /// The same for what needs not be kept.
+    pub fn submit_ready(&self, work: impl FnOnce() -> Work) {
+        let mut state = self.lock();
+        while state.schedule.is_full() {
+            state = self.help_or_wait(state, true);
+        }
+        // Made under the lock: clears are numbered in the order in which they are done.
+        state.schedule.submit_ready(Arc::new(work()));
+    }
+
+    /// Waits until everything that was in flight is drawn. `help`: works meanwhile; so it does while the threads are suspended.
+    pub fn flush(&self, help: bool) {
+        let mut state = self.lock();
+        if !state.suspended && state.idle > 0 && state.schedule.has_work() {
+            self.work.notify_all();
+        }
+        let end = state.schedule.in_flight().end;
+        while state.schedule.in_flight().start < end {
+            let help = help || state.suspended;
+            state = self.help_or_wait(state, help);
+        }
+    }
+
+    /// Draws into another target from now on. Nothing is in flight, and the caller keeps others from submitting.
+    pub fn set_target(&self, target: Option<Arc<Target>>) {
+        let mut state = self.lock();
+        state.schedule.set_bins(target.as_ref().map_or(1, |target| target.bins()));
+        state.target = target;
+    }
+
+    pub fn set_suspended(&self, suspended: bool) {
+        self.lock().suspended = suspended;
+        // Also those who wait for progress: what the threads leave now, they have to do themselves.
+        self.work.notify_all();
+        self.progress.notify_all();
+    }
+
+    /// Ends [`Self::work`].
+    pub fn stop(&self) {
+        self.lock().stopped = true;
+        self.work.notify_all();
+    }
+}

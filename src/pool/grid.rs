@@ -1,0 +1,73 @@
+//! Cuts a buffer into bins: rectangles of whole areas (128x64 pixels), so that each bin keeps its areas up to date by itself and
+//! no two bins share a block.
+
+use crate::buffer::TileRect;
+use crate::buffer::areas::{AREA_TILES_H, AREA_TILES_W};
+
+/// The bins, row by row.
+pub(super) struct Grid {
+    /// Where columns and rows begin, in tiles, and where the last ends.
+    columns: Vec<u32>,
+    rows: Vec<u32>,
+}
+
+impl Grid {
+    /// As equal as areas allow. More bins than areas are as many as areas.
+    pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32) -> Self {
+        let cut = |tiles: u32, bins: u32, area: u32| -> Vec<u32> {
+            let areas = tiles.div_ceil(area);
+            let bins = bins.clamp(1, areas);
+            let begin = |k: u32| (u64::from(k) * u64::from(areas) / u64::from(bins)) as u32 * area;
+            (0..bins).map(begin).chain([tiles]).collect()
+        };
+        Self { columns: cut(tiles.x1, bins_w, AREA_TILES_W), rows: cut(tiles.y1, bins_h, AREA_TILES_H) }
+    }
+
+    pub fn len(&self) -> usize {
+        (self.columns.len() - 1) * (self.rows.len() - 1)
+    }
+
+    /// The tiles of a bin.
+    pub fn tiles(&self, bin: usize) -> TileRect {
+        let (x, y) = (bin % (self.columns.len() - 1), bin / (self.columns.len() - 1));
+        TileRect { x0: self.columns[x], y0: self.rows[y], x1: self.columns[x + 1], y1: self.rows[y + 1] }
+    }
+
+    /// The bins that hold a tile of a rectangle, in order.
+    pub fn touched(&self, tiles: TileRect) -> impl Iterator<Item = usize> {
+        let among = |cuts: &[u32], first: u32, end: u32| {
+            let bin = |tile: u32| cuts.partition_point(|&begin| begin <= tile).clamp(1, cuts.len() - 1) - 1;
+            bin(first)..bin(end.saturating_sub(1).max(first)) + 1
+        };
+        let (columns, wide) = (among(&self.columns, tiles.x0, tiles.x1), self.columns.len() - 1);
+        among(&self.rows, tiles.y0, tiles.y1).flat_map(move |y| columns.clone().map(move |x| y * wide + x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_cover_every_tile_once_and_begin_with_areas() {
+        for (w, h) in [(1, 1), (60, 135), (512, 2048), (5, 9), (4, 8)] {
+            for (bins_w, bins_h) in [(1, 1), (4, 4), (3, 7), (u32::MAX, u32::MAX), (0, 0)] {
+                let grid = Grid::new(TileRect { x0: 0, y0: 0, x1: w, y1: h }, bins_w, bins_h);
+                let mut seen = vec![0; (w * h) as usize];
+                for bin in 0..grid.len() {
+                    let t = grid.tiles(bin);
+                    assert!(t.x0.is_multiple_of(AREA_TILES_W) && t.y0.is_multiple_of(AREA_TILES_H));
+                    assert!(t.x0 < t.x1 && t.y0 < t.y1);
+                    for (x, y) in (t.y0..t.y1).flat_map(|y| (t.x0..t.x1).map(move |x| (x, y))) {
+                        seen[(y * w + x) as usize] += 1;
+                        let one = TileRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+                        assert!(grid.touched(one).eq([bin]));
+                    }
+                }
+                assert!(seen.iter().all(|&n| n == 1));
+                let all = TileRect { x0: 0, y0: 0, x1: w, y1: h };
+                assert!(grid.touched(all).eq(0..grid.len()));
+            }
+        }
+    }
+}

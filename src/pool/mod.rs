@@ -1,0 +1,421 @@
+//! A pool of threads that draw: calls return at once, [`CullingThreadpool::flush`] waits until all of it is drawn.
+//!
+//! ```text
+//! render ──> batches    calls, in the order of submission
+//!            keep       a batch is projected and culled by one thread (see `pipeline/kept.rs`)
+//!            draw       each bin, a piece of the screen, draws the batches in order, one thread at a time
+//! ```
+//!
+//! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
+//! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `target.rs` the bins and
+//! their locks, `grid.rs` the pieces of the screen.
+//!
+//! Threads without work sleep. A caller who finds no room for another batch works until there is; so does who flushes while the
+//! threads are suspended, or are fewer than the machine's processors.
+
+mod crew;
+mod grid;
+mod schedule;
+mod target;
+
+use core::marker::PhantomData;
+use core::ptr::NonNull;
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::thread::{self, JoinHandle};
+
+use crate::vertices::VertexSource;
+use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
+use crew::Crew;
+use target::{Call, Shared, Target, Work};
+
+/// Larger calls are cut, so that several threads can project them.
+const CALL_TRIANGLES: usize = 1536;
+
+/// Threads that draw into a [`MaskedOcclusionCulling`], with the bits that one thread would give.
+///
+/// Several threads may submit and query at once; calls of one thread take effect in its order.
+pub struct CullingThreadpool {
+    crew: Arc<Crew>,
+    threads: Vec<JoinHandle<()>>,
+    bins: (u32, u32),
+    /// Who flushes works, too.
+    helps: bool,
+    /// The bits of the near plane; NaN while only the object's own counts.
+    near: AtomicU32,
+    /// Held for reading by who submits or queries, for writing by who exchanges it.
+    target: RwLock<Option<Arc<Target>>>,
+}
+
+impl CullingThreadpool {
+    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. Bins are `bins_w` by `bins_h` pieces of the screen;
+    /// several for each thread are good. Bins are not smaller than 128 by 64 pixels: where the screen holds no more of those,
+    /// there are fewer. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0; [`Error::OutOfMemory`] where the system starts no more
+    /// threads.
+    pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
+        if bins_w == 0 || bins_h == 0 || max_jobs == 0 {
+            return Err(Error::InvalidSize);
+        }
+        let processors = thread::available_parallelism().map_or(1, |n| n.get());
+        let mut pool = Self {
+            crew: Arc::new(Crew::new(max_jobs as usize)),
+            threads: Vec::new(),
+            bins: (bins_w, bins_h),
+            helps: std::env::var("NOHELP").is_err() || (threads as usize) < processors,
+            near: AtomicU32::new(f32::NAN.to_bits()),
+            target: RwLock::new(None),
+        };
+        for number in 0..threads as usize {
+            let crew = pool.crew.clone();
+            let start = thread::Builder::new().name(format!("culling {number}"));
+            // Those that did start end with the pool.
+            pool.threads.push(start.spawn(move || crew.work(number)).map_err(|_| Error::OutOfMemory)?);
+        }
+        Ok(pool)
+    }
+
+    /// Lets the threads work. A second time changes nothing.
+    pub fn wake_threads(&self) {
+        self.crew.set_suspended(false);
+    }
+
+    /// Lets the threads sleep as soon as each has finished what it is at. Calls are taken in meanwhile.
+    pub fn suspend_threads(&self) {
+        self.crew.set_suspended(true);
+    }
+
+    /// Waits until everything that was submitted before is drawn.
+    pub fn flush(&self) {
+        self.crew.flush(self.helps);
+    }
+
+    /// Draws into this object from now on, which the pool owns until [`Self::take_buffer`]. One that it had is dropped, after
+    /// what was submitted is drawn.
+    pub fn set_buffer(&self, moc: MaskedOcclusionCulling) {
+        let moc = NonNull::from(Box::leak(Box::new(moc)));
+        // SAFETY: leaked just now, and freed with the target.
+        unsafe { self.exchange(Some((moc, true))) };
+    }
+
+    /// Flushes, and hands the object back. Nothing where there is none that the pool owns.
+    pub fn take_buffer(&self) -> Option<MaskedOcclusionCulling> {
+        let mut gate = self.gate();
+        if !gate.as_ref()?.is_owned() {
+            return None;
+        }
+        self.flush();
+        self.crew.set_target(None);
+        Arc::into_inner(gate.take()?)?.into_owned()
+    }
+
+    /// Draws into this object from now on, or into none, after what was submitted is drawn.
+    ///
+    /// # Safety
+    /// The object stays where it is until another one is set or the pool is dropped; meanwhile it is used through the pool only, or
+    /// after a flush while nobody submits.
+    pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) {
+        // SAFETY: the caller's contract.
+        unsafe { self.exchange(moc.map(|moc| (moc, false))) }
+    }
+
+    /// # Safety
+    /// As [`Target::new`].
+    unsafe fn exchange(&self, moc: Option<(NonNull<MaskedOcclusionCulling>, bool)>) {
+        let mut gate = self.gate();
+        self.flush();
+        // SAFETY: the caller's contract.
+        let new = moc.map(|(moc, owned)| Arc::new(unsafe { Target::new(moc, owned, self.bins.0, self.bins.1) }));
+        if let Some(target) = &new {
+            // NaN is refused: none was set.
+            let _ = target.moc().set_near_shared(f32::from_bits(self.near.load(Relaxed)));
+        }
+        self.crew.set_target(new.clone());
+        *gate = new;
+    }
+
+    /// Gives the object another resolution, after what was submitted is drawn, and clears it.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`] where the pool has no object; as [`MaskedOcclusionCulling::set_resolution`].
+    pub fn set_resolution(&self, width: u32, height: u32) -> Result<(), Error> {
+        let mut gate = self.gate();
+        self.flush();
+        let target = gate.as_ref().ok_or(Error::NoBuffer)?;
+        // SAFETY: nothing is in flight, and nobody submits or queries while the gate is held.
+        unsafe { &mut *target.pointer().as_ptr() }.set_resolution(width, height)?;
+        self.cut_again(&mut gate);
+        Ok(())
+    }
+
+    /// Makes the bins anew. Nothing is in flight.
+    fn cut_again(&self, gate: &mut Option<Arc<Target>>) {
+        self.crew.set_target(None);
+        // Nobody else holds it: threads let go of it before they report what they did.
+        if let Some(target) = gate.take().and_then(Arc::into_inner) {
+            *gate = Some(Arc::new(target.resized(self.bins.0, self.bins.1)));
+        }
+        self.crew.set_target(gate.clone());
+    }
+
+    /// Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+    ///
+    /// # Errors
+    /// [`Error::InvalidNumber`] for NaN or an infinity; the plane stays where it was.
+    pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
+        if !near.is_finite() {
+            return Err(Error::InvalidNumber);
+        }
+        self.near.store(near.to_bits(), Relaxed);
+        match &*self.pass() {
+            Some(target) => target.moc().set_near_shared(near),
+            None => Ok(()),
+        }
+    }
+
+    /// Clears the object, in order with the calls around it. What was drawn before hides nothing from now on.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`].
+    pub fn clear_buffer(&self) -> Result<(), Error> {
+        self.with_buffer(|target| {
+            self.crew.submit_ready(|| Work::Clear(target.count_clear()));
+            Ok(())
+        })
+    }
+
+    /// Draws inside of `calls` what lives at least as long as that takes, and flushes at its end.
+    ///
+    /// # Panics
+    /// If `calls` does.
+    pub fn scope<'e, R>(&'e self, calls: impl FnOnce(&Scope<'e>) -> R) -> R {
+        let scope = Scope { pool: self, lives: PhantomData };
+        calls(&scope)
+    }
+
+    /// Draws occluders, in order with the calls around it; see [`MaskedOcclusionCulling::render_triangles`]. Returns at once, or
+    /// works when there is no room.
+    ///
+    /// # Safety
+    /// The vertices and the indices stay as they are until the pool was flushed.
+    ///
+    /// # Errors
+    /// As there.
+    pub unsafe fn render_triangles(
+        &self,
+        vertices: Vertices<'_>,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<(), Error> {
+        self.with_buffer(|target| target.moc().check_mesh(&vertices, triangles))?;
+        // SAFETY: `check_mesh` saw that every index names a vertex; the rest is the caller's contract.
+        unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
+    }
+
+    /// # Safety
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`, and they and the indices
+    /// stay as they are until the pool was flushed.
+    pub(crate) unsafe fn render_triangles_unchecked(
+        &self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<(), Error> {
+        self.with_buffer(|target| {
+            let near = target.moc().near_clip_plane();
+            for piece in triangles.chunks(3 * CALL_TRIANGLES) {
+                let (triangles, indices) = (piece.as_ptr(), piece.len());
+                self.crew.submit(Call { vertices, triangles, indices, options: *options, near });
+            }
+            Ok(())
+        })
+    }
+
+    /// Folds other buffers into the pool's, in order with the calls around it, each bin by a thread; see
+    /// [`MaskedOcclusionCulling::merge_buffers`].
+    ///
+    /// # Safety
+    /// The others stay where they are, and nobody changes them, until the pool was flushed; none is the pool's own.
+    ///
+    /// # Errors
+    /// As there.
+    pub unsafe fn merge_buffers(&self, others: &[&MaskedOcclusionCulling]) -> Result<(), Error> {
+        self.with_buffer(|target| {
+            target.moc().mergeable(others)?;
+            let others = others.iter().map(|&other| Shared(NonNull::from(other))).collect();
+            self.crew.submit_ready(|| Work::Merge(others));
+            Ok(())
+        })
+    }
+
+    /// Tests a rectangle against what is drawn by now; see [`MaskedOcclusionCulling::test_rect`].
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`].
+    pub fn test_rect(
+        &self,
+        x_min: f32,
+        y_min: f32,
+        x_max: f32,
+        y_max: f32,
+        w_min: f32,
+    ) -> Result<CullingResult, Error> {
+        self.with_buffer(|target| {
+            let tiles = target.moc().rectangle_tiles([x_min, y_min, x_max, y_max])?;
+            target.query(tiles, |moc| moc.test_rect(x_min, y_min, x_max, y_max, w_min))
+        })
+    }
+
+    /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn test_triangles(
+        &self,
+        vertices: Vertices<'_>,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        self.ask_all(|moc| moc.test_triangles(vertices, triangles, options))
+    }
+
+    /// As [`Self::test_triangles`].
+    ///
+    /// # Safety
+    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
+    pub(crate) unsafe fn test_triangles_unchecked(
+        &self,
+        vertices: VertexSource,
+        triangles: &[u32],
+        options: &DrawOptions,
+    ) -> Result<CullingResult, Error> {
+        // SAFETY: the caller's contract.
+        self.ask_all(|moc| unsafe { moc.test_triangles_unchecked(vertices, triangles, options) })
+    }
+
+    /// Looks at the object itself, which has a buffer.
+    pub(crate) fn with_object<R>(
+        &self,
+        look: impl FnOnce(&MaskedOcclusionCulling) -> Result<R, Error>,
+    ) -> Result<R, Error> {
+        self.with_buffer(|target| look(target.moc()))
+    }
+
+    /// Asks while nobody draws.
+    pub(crate) fn ask_all(
+        &self,
+        ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
+    ) -> Result<CullingResult, Error> {
+        self.with_buffer(|target| target.query(target.all_tiles(), ask))
+    }
+
+    /// Flushes, and writes the depth of every pixel; see [`MaskedOcclusionCulling::compute_pixel_depth_buffer`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
+        self.with_pixels(|_| Ok(depth), flip_y)
+    }
+
+    /// The same into an array that is found when its length is known.
+    pub(crate) fn with_pixels<'a>(
+        &self,
+        array: impl FnOnce(usize) -> Result<&'a mut [f32], Error>,
+        flip_y: bool,
+    ) -> Result<(), Error> {
+        self.flush();
+        let write = |moc: &MaskedOcclusionCulling| {
+            let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
+            moc.compute_pixel_depth_buffer(array(width as usize * height as usize)?, flip_y)?;
+            Ok(CullingResult::Visible)
+        };
+        self.ask_all(write).map(|_| ())
+    }
+
+    /// What the object counted, after a flush; see [`MaskedOcclusionCulling::statistics`].
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`].
+    pub fn statistics(&self) -> Result<crate::Statistics, Error> {
+        self.flush();
+        Ok(self.pass().as_ref().ok_or(Error::NoBuffer)?.moc().statistics())
+    }
+
+    /// The target, whose bins fit its object: after a flush its owner may have given it another resolution.
+    fn pass(&self) -> RwLockReadGuard<'_, Option<Arc<Target>>> {
+        loop {
+            let pass = self.target.read().unwrap_or_else(PoisonError::into_inner);
+            if !pass.as_ref().is_some_and(|target| target.is_outdated()) {
+                return pass;
+            }
+            drop(pass);
+            let mut gate = self.gate();
+            self.flush();
+            self.cut_again(&mut gate);
+        }
+    }
+
+    /// The target, if it has a buffer.
+    fn with_buffer<R>(&self, call: impl FnOnce(&Target) -> Result<R, Error>) -> Result<R, Error> {
+        let pass = self.pass();
+        let target = pass.as_ref().ok_or(Error::NoBuffer)?;
+        target.moc().buffer()?;
+        call(target)
+    }
+
+    fn gate(&self) -> RwLockWriteGuard<'_, Option<Arc<Target>>> {
+        self.target.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for CullingThreadpool {
+    /// Draws what was submitted and ends the threads.
+    fn drop(&mut self) {
+        self.flush();
+        self.crew.stop();
+        for thread in self.threads.drain(..) {
+            // What a thread says when it ends in a panic, it has said already.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Calls of a [`CullingThreadpool::scope`].
+pub struct Scope<'e> {
+    pool: &'e CullingThreadpool,
+    /// Invariant, so that what is lent cannot be made to live shorter.
+    lives: PhantomData<core::cell::Cell<&'e ()>>,
+}
+
+impl<'e> Scope<'e> {
+    /// As [`CullingThreadpool::render_triangles`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn render_triangles(
+        &self,
+        vertices: Vertices<'e>,
+        triangles: &'e [u32],
+        options: &DrawOptions,
+    ) -> Result<(), Error> {
+        // SAFETY: they are lent for longer than the scope, which flushes when it ends.
+        unsafe { self.pool.render_triangles(vertices, triangles, options) }
+    }
+
+    /// As [`CullingThreadpool::merge_buffers`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn merge_buffers(&self, others: &[&'e MaskedOcclusionCulling]) -> Result<(), Error> {
+        // SAFETY: as above; what the pool owns cannot be lent.
+        unsafe { self.pool.merge_buffers(others) }
+    }
+}
+
+impl Drop for Scope<'_> {
+    fn drop(&mut self) {
+        self.pool.flush();
+    }
+}

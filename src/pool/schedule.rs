@@ -1,0 +1,210 @@
+//! Who may do what next: the order of a pool's work, and nothing else.
+//!
+//! Calls are gathered into batches. A batch is first kept (projected, by one thread), then drawn by every bin, a piece of the
+//! screen, and every bin draws the batches in the order in which they were submitted, one thread at a time. So each tile sees the
+//! same triangles in the same order as on one thread, whatever the threads do meanwhile.
+//!
+//! This is a plain state machine; the pool holds it under one lock, and does the work outside of the lock. A ready-made
+//! queue or a work-stealing pool knows no order per bin: each batch would have to wait for the one before it.
+
+use std::collections::VecDeque;
+
+/// A batch takes calls until they weigh so much: triangles, and something for each call.
+pub(super) const BATCH_WEIGHT: usize = 2048;
+/// What a call weighs besides its triangles.
+pub(super) const CALL_WEIGHT: usize = 16;
+/// An open batch that weighs so much is worth a thread's while.
+pub(super) const WORTHWHILE: usize = 512;
+/// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
+const AT_ONCE: usize = 8;
+
+/// What a thread is to do.
+pub(super) enum Task<C, W> {
+    /// Keep these calls, and say so by [`Schedule::kept`].
+    Keep { batch: u64, calls: Vec<C> },
+    /// Draw these into the bin, in order, and say so by [`Schedule::drawn`].
+    Draw { bin: usize, work: Vec<W> },
+}
+
+enum Stage<C, W> {
+    /// Takes calls while it is the last; with their weight.
+    Open(Vec<C>, usize),
+    /// Somebody keeps it.
+    Taken,
+    Ready(W),
+}
+
+struct Batch<C, W> {
+    stage: Stage<C, W>,
+    /// Bins that did not draw it yet.
+    bins_left: usize,
+}
+
+#[derive(Clone, Default)]
+struct Bin {
+    /// Number of the batch to be drawn next.
+    next: u64,
+    /// Somebody draws in it.
+    busy: bool,
+}
+
+/// The batches in flight.
+pub(super) struct Schedule<C, W> {
+    bins: Vec<Bin>,
+    batches: VecDeque<Batch<C, W>>,
+    /// Number of the first of them, of the first that may be still open, and of the first that is not ready.
+    first: u64,
+    open: u64,
+    ready: u64,
+    max: usize,
+}
+
+impl<C, W: Clone> Schedule<C, W> {
+    /// For `bins` bins, with at most `max` batches in flight.
+    pub fn new(bins: usize, max: usize) -> Self {
+        let (first, open, ready) = (0, 0, 0);
+        Self { bins: vec![Bin::default(); bins], batches: VecDeque::new(), first, open, ready, max: max.max(1) }
+    }
+
+    /// Numbers of the first batch in flight, and of the next to come.
+    pub fn in_flight(&self) -> core::ops::Range<u64> {
+        self.first..self.first + self.batches.len() as u64
+    }
+
+    /// Nothing is in flight.
+    pub fn is_done(&self) -> bool {
+        self.batches.is_empty()
+    }
+
+    /// Gives it other bins.
+    ///
+    /// # Panics
+    /// If something is in flight.
+    pub fn set_bins(&mut self, bins: usize) {
+        assert!(self.is_done());
+        self.bins = vec![Bin { next: self.first, busy: false }; bins];
+    }
+
+    /// Takes a call in, or gives it back where there is no room. `weight`: its triangles. True: there is something worth
+    /// waking a thread for.
+    pub fn submit(&mut self, call: C, weight: usize) -> Result<bool, C> {
+        let weight = weight + CALL_WEIGHT;
+        if let Some(Batch { stage: Stage::Open(calls, sum), .. }) = self.batches.back_mut()
+            && *sum + weight <= BATCH_WEIGHT
+        {
+            calls.push(call);
+            let before = *sum;
+            *sum += weight;
+            return Ok(before < WORTHWHILE && *sum >= WORTHWHILE);
+        }
+        if self.is_full() {
+            return Err(call);
+        }
+        let closes = matches!(self.batches.back(), Some(Batch { stage: Stage::Open(..), .. }));
+        self.push(Stage::Open(vec![call], weight));
+        Ok(closes || weight >= WORTHWHILE)
+    }
+
+    /// Is there no room for another batch?
+    pub fn is_full(&self) -> bool {
+        self.batches.len() >= self.max
+    }
+
+    /// Takes in what needs not be kept first.
+    ///
+    /// # Panics
+    /// If it is full.
+    pub fn submit_ready(&mut self, work: W) {
+        assert!(!self.is_full());
+        self.push(Stage::Ready(work));
+        self.find_ready();
+    }
+
+    fn push(&mut self, stage: Stage<C, W>) {
+        self.batches.push_back(Batch { stage, bins_left: self.bins.len() });
+    }
+
+    fn find_ready(&mut self) {
+        let after = |ready: u64| self.batches.get((ready - self.first) as usize);
+        let mut ready = self.ready;
+        while matches!(after(ready), Some(Batch { stage: Stage::Ready(_), .. })) {
+            ready += 1;
+        }
+        self.ready = ready;
+    }
+
+    /// Something to do, if there is. `bin`: the one to draw in by preference, which is in this thread's cache.
+    pub fn claim(&mut self, bin: usize) -> Option<Task<C, W>> {
+        self.claim_batch(WORTHWHILE).or_else(|| self.claim_bin(bin)).or_else(|| self.claim_batch(0))
+    }
+
+    /// The first batch that nobody keeps, unless it is the last one and weighs less.
+    fn claim_batch(&mut self, least: usize) -> Option<Task<C, W>> {
+        let end = self.in_flight().end;
+        while self.open < end {
+            let batch = self.open;
+            let stage = &mut self.batches[(batch - self.first) as usize].stage;
+            match stage {
+                Stage::Open(_, sum) if batch + 1 == end && *sum < least => return None,
+                Stage::Open(calls, _) => {
+                    let calls = core::mem::take(calls);
+                    *stage = Stage::Taken;
+                    self.open += 1;
+                    return Some(Task::Keep { batch, calls });
+                }
+                _ => self.open += 1,
+            }
+        }
+        None
+    }
+
+    /// A bin that is behind: the preferred one, or else the one that is most.
+    fn claim_bin(&mut self, preferred: usize) -> Option<Task<C, W>> {
+        let free = |bin: &Bin| !bin.busy && bin.next < self.ready;
+        let bin = match self.bins.get(preferred) {
+            Some(bin) if free(bin) => preferred,
+            _ => (0..self.bins.len()).filter(|&k| free(&self.bins[k])).min_by_key(|&k| self.bins[k].next)?,
+        };
+        let next = self.bins[bin].next;
+        let from = (next - self.first) as usize;
+        let to = ((self.ready - self.first) as usize).min(from + AT_ONCE);
+        let ready = |batch: &Batch<C, W>| match &batch.stage {
+            Stage::Ready(work) => Some(work.clone()),
+            _ => None,
+        };
+        let work: Vec<W> = self.batches.range(from..to).filter_map(ready).collect();
+        debug_assert_eq!(work.len(), to - from);
+        self.bins[bin].busy = true;
+        Some(Task::Draw { bin, work })
+    }
+
+    /// Would [`Self::claim`] find something?
+    pub fn has_work(&self) -> bool {
+        let unkept = self.batches.range((self.open - self.first) as usize..);
+        let mut unkept = unkept.map(|batch| &batch.stage);
+        unkept.any(|stage| matches!(stage, Stage::Open(..)))
+            || self.bins.iter().any(|bin| !bin.busy && bin.next < self.ready)
+    }
+
+    /// A batch was kept.
+    pub fn kept(&mut self, batch: u64, work: W) {
+        self.batches[(batch - self.first) as usize].stage = Stage::Ready(work);
+        self.find_ready();
+    }
+
+    /// A bin drew the next `count` batches. Hands back, by `done`, what all bins have drawn.
+    pub fn drawn(&mut self, bin: usize, count: usize, mut done: impl FnMut(W)) {
+        let from = (self.bins[bin].next - self.first) as usize;
+        for batch in self.batches.range_mut(from..from + count) {
+            batch.bins_left -= 1;
+        }
+        self.bins[bin] = Bin { next: self.bins[bin].next + count as u64, busy: false };
+        while self.batches.front().is_some_and(|batch| batch.bins_left == 0) {
+            if let Some(Batch { stage: Stage::Ready(work), .. }) = self.batches.pop_front() {
+                done(work);
+            }
+            self.first += 1;
+        }
+        (self.open, self.ready) = (self.open.max(self.first), self.ready.max(self.first));
+    }
+}

@@ -1,0 +1,212 @@
+//! The object that a pool draws into, in bins that are locked one by one: one thread draws in a bin, or any number query it.
+
+use core::ptr::NonNull;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
+
+use super::grid::Grid;
+use crate::buffer::TileRect;
+use crate::pipeline::Kept;
+use crate::vertices::VertexSource;
+use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling};
+
+/// A call, or a part of it, as it was submitted.
+pub(super) struct Call {
+    pub vertices: VertexSource,
+    pub triangles: *const u32,
+    pub indices: usize,
+    pub options: DrawOptions,
+    pub near: f32,
+}
+
+// SAFETY: who submitted it vouches that what it points to stays as it is until the pool was flushed.
+unsafe impl Send for Call {}
+
+/// What a bin takes in.
+pub(super) enum Work {
+    Triangles(Kept),
+    /// The number of the clear, from 1 on.
+    Clear(u64),
+    Merge(Vec<Shared>),
+}
+
+/// An object that is looked at only.
+pub(super) struct Shared(pub NonNull<MaskedOcclusionCulling>);
+
+// SAFETY: who submitted it vouches that nobody changes it until the pool was flushed; it may be shared between threads.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+/// What goes with the lock of a bin.
+#[derive(Default)]
+struct Piece {
+    /// Clears that it saw.
+    clears: u64,
+    /// When its areas are due; see `areas.rs`.
+    drawn: u32,
+}
+
+/// On a cache line of its own, so that threads in neighbouring bins do not slow each other down.
+#[repr(align(64))]
+#[derive(Default)]
+struct Bin(RwLock<Piece>);
+
+pub(super) struct Target {
+    moc: Shared,
+    /// It goes with the pool.
+    owned: bool,
+    /// All tiles that the object had when the bins were made; one where it had no buffer.
+    tiles: TileRect,
+    grid: Grid,
+    bins: Vec<Bin>,
+    /// Clears that were submitted.
+    clears: AtomicU64,
+}
+
+impl Target {
+    /// # Safety
+    /// The object stays where it is until the target is dropped; meanwhile it is used through the target only, or
+    /// while nothing is in flight.
+    pub unsafe fn new(moc: NonNull<MaskedOcclusionCulling>, owned: bool, bins_w: u32, bins_h: u32) -> Self {
+        // SAFETY: the caller's contract.
+        let tiles = tiles_of(unsafe { moc.as_ref() });
+        let grid = Grid::new(tiles, bins_w, bins_h);
+        let bins = (0..grid.len()).map(|_| Bin::default()).collect();
+        Self { moc: Shared(moc), owned, tiles, grid, bins, clears: AtomicU64::new(0) }
+    }
+
+    /// Was its object given another resolution behind its back?
+    pub fn is_outdated(&self) -> bool {
+        self.tiles != tiles_of(self.moc())
+    }
+
+    pub fn moc(&self) -> &MaskedOcclusionCulling {
+        // SAFETY: `new`'s contract; only shared references are made, what is drawn goes through the buffer's pointers.
+        unsafe { self.moc.0.as_ref() }
+    }
+
+    pub fn pointer(&self) -> NonNull<MaskedOcclusionCulling> {
+        self.moc.0
+    }
+
+    pub fn bins(&self) -> usize {
+        self.bins.len()
+    }
+
+    /// Counts a clear before it is submitted: from now on what was drawn before hides nothing.
+    pub fn count_clear(&self) -> u64 {
+        self.clears.fetch_add(1, Ordering::AcqRel) + 1
+    }
+
+    /// Projects calls.
+    ///
+    /// # Safety
+    /// What they point to can be read.
+    pub unsafe fn keep(&self, calls: &[Call], kept: &mut Kept) {
+        kept.clear();
+        for call in calls {
+            // SAFETY: the caller's contract; an array of no triangles may be anywhere.
+            let triangles = match call.indices {
+                0 => &[],
+                n => unsafe { core::slice::from_raw_parts(call.triangles, n) },
+            };
+            // SAFETY: the caller's contract.
+            let done = unsafe { self.moc().keep(call.vertices, triangles, &call.options, call.near, kept) };
+            debug_assert_eq!(done, Ok(()), "a target has a buffer");
+        }
+    }
+
+    /// Does some work, in order, in a bin.
+    pub fn draw(&self, bin: usize, work: &[Arc<Work>]) {
+        let clip = self.grid.tiles(bin);
+        let mut piece = self.bins[bin].0.write().unwrap_or_else(PoisonError::into_inner);
+        for run in work.chunk_by(|a, b| matches!((&**a, &**b), (Work::Triangles(..), Work::Triangles(..)))) {
+            match &*run[0] {
+                Work::Triangles(..) => {
+                    let kept = run.iter().filter_map(|work| match &**work {
+                        Work::Triangles(kept) => Some(kept),
+                        _ => None,
+                    });
+                    // SAFETY: whoever has the bin's lock for writing has its tiles and areas to itself.
+                    let done = unsafe { self.moc().draw_kept(kept, clip, &mut piece.drawn) };
+                    debug_assert_eq!(done, Ok(()), "a target has a buffer");
+                }
+                Work::Clear(number) => {
+                    if let Ok(buffer) = self.moc().buffer() {
+                        // SAFETY: as above.
+                        unsafe { buffer.clear_tiles(clip) };
+                    }
+                    *piece = Piece { clears: *number, drawn: 0 };
+                }
+                Work::Merge(others) => self.merge(others, clip),
+            }
+        }
+    }
+
+    fn merge(&self, others: &[Shared], clip: TileRect) {
+        // SAFETY: who submitted them vouches for them.
+        let others: Vec<&MaskedOcclusionCulling> = others.iter().map(|other| unsafe { other.0.as_ref() }).collect();
+        if let (Ok(mine), Ok(theirs)) = (self.moc().buffer(), self.moc().mergeable(&others)) {
+            // SAFETY: the bin's lock is held for writing; who submitted the others vouches for them.
+            unsafe { crate::buffer::merge::merge(self.moc().implementation(), mine, &theirs, clip) };
+        }
+    }
+
+    /// Asks while nobody draws in the bins that hold a tile of a rectangle. What was drawn before a clear that was submitted, but
+    /// not done yet, hides nothing.
+    pub fn query(
+        &self,
+        tiles: TileRect,
+        ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
+    ) -> Result<CullingResult, Error> {
+        let clears = self.clears.load(Ordering::Acquire);
+        let read = |bin: usize| self.bins[bin].0.read().unwrap_or_else(PoisonError::into_inner);
+        // Most rectangles lie in one bin, for which no list is allocated.
+        let mut bins = self.grid.touched(tiles);
+        let first: Option<RwLockReadGuard<'_, Piece>> = bins.next().map(read);
+        let rest: Vec<RwLockReadGuard<'_, Piece>> = bins.map(read).collect();
+        let stale = first.iter().chain(&rest).any(|piece| piece.clears < clears);
+        match ask(self.moc())? {
+            CullingResult::Occluded if stale => Ok(CullingResult::Visible),
+            result => Ok(result),
+        }
+    }
+
+    /// The same after its object got another resolution.
+    pub fn resized(mut self, bins_w: u32, bins_h: u32) -> Self {
+        let owned = core::mem::take(&mut self.owned);
+        // SAFETY: `self`'s contract goes on.
+        unsafe { Self::new(self.moc.0, owned, bins_w, bins_h) }
+    }
+
+    /// The object, if it goes with the pool.
+    pub fn into_owned(mut self) -> Option<MaskedOcclusionCulling> {
+        let owned = core::mem::take(&mut self.owned);
+        // SAFETY: it came from a box that was leaked to the pool, and is not freed again.
+        owned.then(|| *unsafe { Box::from_raw(self.moc.0.as_ptr()) })
+    }
+
+    pub fn is_owned(&self) -> bool {
+        self.owned
+    }
+
+    /// Every tile.
+    pub fn all_tiles(&self) -> TileRect {
+        self.tiles
+    }
+}
+
+impl Drop for Target {
+    fn drop(&mut self) {
+        if self.owned {
+            // SAFETY: it came from a box that was leaked to the pool.
+            drop(unsafe { Box::from_raw(self.moc.0.as_ptr()) });
+        }
+    }
+}
+
+/// All tiles of an object, or one where it has no buffer yet.
+fn tiles_of(moc: &MaskedOcclusionCulling) -> TileRect {
+    moc.buffer().map_or(TileRect { x0: 0, y0: 0, x1: 1, y1: 1 }, |buffer| buffer.all_tiles())
+}
