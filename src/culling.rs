@@ -6,9 +6,9 @@ use glam::Mat4;
 
 use crate::bins::TriList;
 use crate::buffer::{Buffer, TileRect};
-use crate::pipeline::{self, Camera, Kept, Mesh};
+use crate::pipeline::{self, Camera, Cuts, Kept, Mesh};
 use crate::rectangle;
-use crate::statistics::{Counters, Tally};
+use crate::statistics::Counters;
 use crate::vertices::VertexSource;
 use crate::{
     Allocator, BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, UpdateRule,
@@ -398,12 +398,15 @@ impl MaskedOcclusionCulling {
         triangles: &[u32],
         options: &DrawOptions,
         near: f32,
+        (cuts, sift): (&Cuts, bool),
         kept: &mut Kept,
     ) -> Result<(), Error> {
         let camera = self.camera_at(options, near)?;
         let mesh = Mesh { vertices, triangles, options };
+        // Counts want to know of hidden triangles, too.
+        let sift = sift && !self.statistics;
         // SAFETY: the caller's contract.
-        let tally = unsafe { pipeline::keep(self.implementation, self.buffer()?, &camera, &mesh, kept) };
+        let tally = unsafe { pipeline::keep(self.implementation, self.buffer()?, &camera, &mesh, (cuts, sift), kept) };
         self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
@@ -415,13 +418,12 @@ impl MaskedOcclusionCulling {
     pub(crate) unsafe fn draw_kept<'a>(
         &self,
         kept: impl Iterator<Item = &'a Kept>,
-        clip: TileRect,
+        piece: (TileRect, usize),
         drawn: &mut u32,
     ) -> Result<(), Error> {
         // SAFETY: the caller's contract.
-        let tally = unsafe { pipeline::draw_kept(self.implementation, self.buffer()?, kept, clip, drawn) };
-        // A triangle is rasterized once, in however many pieces: that was counted when it was kept.
-        self.counters.add_draw(self.statistics, &Tally { rasterized: 0, ..tally });
+        let tally = unsafe { pipeline::draw_kept(self.implementation, self.buffer()?, kept, piece, drawn) };
+        self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
 

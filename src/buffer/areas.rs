@@ -6,7 +6,7 @@
 //! and only by whoever has the whole buffer to itself.
 
 use super::{Buffer, TileRect, UNTOUCHED};
-use crate::simd::{MAX_LANES, Simd};
+use crate::simd::{MAX_LANES, Simd, store_relaxed};
 
 pub(crate) const AREA_TILES_W: u32 = 4;
 pub(crate) const AREA_TILES_H: u32 = 8;
@@ -34,7 +34,7 @@ pub(super) unsafe fn clear(buffer: &Buffer, clip: TileRect) {
     for y in rows {
         for x in columns.clone() {
             // SAFETY: the caller's contract.
-            unsafe { buffer.areas().add((y * buffer.areas_w + x) as usize).write(UNTOUCHED) };
+            unsafe { store_relaxed(buffer.areas().add((y * buffer.areas_w + x) as usize), UNTOUCHED) };
         }
     }
 }
@@ -88,7 +88,7 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
             }
             for (lane, &least) in least[..S::LANES.min(areas - k)].iter().enumerate() {
                 // SAFETY: an area of the rectangle.
-                unsafe { to.add(k + lane).write(least) };
+                unsafe { store_relaxed(to.add(k + lane), least) };
             }
         }
     }

@@ -29,7 +29,7 @@ pub(crate) use rule::{Planes, Rule};
 pub(crate) use three_layer::ThreeLayer;
 
 use crate::allocator::AlignedWords;
-use crate::simd::{MAX_LANES, Simd};
+use crate::simd::{MAX_LANES, Simd, store_relaxed};
 use crate::{Allocator, Error, ScissorRect, UpdateRule};
 
 pub(crate) const TILE_WIDTH: u32 = 32;
@@ -154,7 +154,7 @@ impl Buffer {
         for y in clip.y0..clip.y1.next_multiple_of(2) {
             for x in clip.x0..clip.x1 {
                 // SAFETY: the caller's contract.
-                unsafe { self.least_of(x, y).write(UNTOUCHED) };
+                unsafe { store_relaxed(self.least_of(x, y), UNTOUCHED) };
             }
         }
         // SAFETY: the caller's contract.

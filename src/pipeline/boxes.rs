@@ -13,6 +13,17 @@ use crate::simd::Simd;
 /// How far, in 1/256 pixel, a snapped vertex of a query may be from the true one, and a little.
 pub(super) const QUERY_SLACK: i32 = 2;
 
+/// Where least depths may be looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    /// Inside of these tiles.
+    pub clip: TileRect,
+    /// Their areas are kept up to date.
+    pub areas: bool,
+    /// Other threads may be drawing there. What is read then may be old, which is safe: between clears, least depths only rise.
+    pub racing: bool,
+}
+
 /// The boxes of a vector of triangles: of a draw the pixels whose centre is inside, of a query those that are touched.
 pub(super) struct Boxes<S: Simd> {
     /// The largest coordinate in size.
@@ -59,23 +70,16 @@ impl<S: Simd> Boxes<S> {
         }
     }
 
-    /// Boxes that show nothing at `nearest` or farther inside of a rectangle of tiles, or have nothing there. `with_areas`: the
-    /// areas of the rectangle may be looked at, too.
+    /// Boxes that show nothing at `nearest` or farther inside of a rectangle of tiles, or have nothing there.
     ///
     /// How current areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
     /// would tell, and it leaves them out.
     ///
     /// # Safety
-    /// Nobody else writes to the tiles and areas of the rectangle.
+    /// Nobody else writes to the tiles and areas of the rectangle, unless `racing`.
     #[inline(always)]
-    pub unsafe fn hidden(
-        &self,
-        s: S,
-        buffer: &Buffer,
-        (clip, with_areas): (TileRect, bool),
-        purpose: Purpose,
-        nearest: S::F,
-    ) -> S::M {
+    pub unsafe fn hidden(&self, s: S, buffer: &Buffer, look: Look, purpose: Purpose, nearest: S::F) -> S::M {
+        let Look { clip, areas: with_areas, racing } = look;
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
         if clip != buffer.all_tiles() {
@@ -102,7 +106,10 @@ impl<S: Simd> Boxes<S> {
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
         // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile.
-        let at = |row: S::I, x: S::I| unsafe { s.gather(buffer.least(), s.select_i(few, s.add_i(row, x), any)) };
+        let at = |row: S::I, x: S::I| unsafe {
+            let index = s.select_i(few, s.add_i(row, x), any);
+            if racing { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
+        };
         let least = s.min(s.min(at(top, left), at(top, right)), s.min(at(bottom, left), at(bottom, right)));
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
         s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))

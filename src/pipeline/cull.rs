@@ -3,6 +3,7 @@
 //! A mesh is taken in chunks whose vertices are in the scratch (see `chunk.rs`).
 
 use super::batch::Batch;
+use super::boxes::Look;
 use super::chunk::{self, Numbering};
 use super::clip::{self, Clipped};
 use super::last_step::{All, LastStep, take_survivors};
@@ -41,14 +42,8 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
-    let setup = Setup {
-        s,
-        purpose: L::PURPOSE,
-        buffer,
-        both_sides: facing.both,
-        clip: buffer.all_tiles(),
-        areas: L::PURPOSE == Purpose::Draw,
-    };
+    let look = Look { clip: buffer.all_tiles(), areas: L::PURPOSE == Purpose::Draw, racing: false };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: facing.both, look };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);

@@ -1,18 +1,38 @@
 //! Triangles that are projected once and drawn later, in pieces of the screen: what threads hand to each other.
 //!
-//! All that survives is kept in order, in blocks of vectors. Whoever draws a piece of the screen passes through all of it and takes
-//! what overlaps, which costs some fifteen cycles a vector; lists for each piece would have to be written triangle by
-//! triangle. Survivors of several meshes share the vectors of setup, which a mesh of a dozen triangles drawn by itself does
-//! not fill.
+//! All that survives is kept in order, in vectors, and with each vector, for each piece of the screen, which of its triangles
+//! reach it. Survivors of several meshes share the vectors of setup, which a mesh of a dozen triangles drawn by itself does not
+//! fill.
 
-use super::batch::{Batch, Lanes};
+use super::batch::Batch;
+use super::boxes::{Boxes, Look};
 use super::last_step::{All, LastStep, take_survivors};
 use super::scratch::MAX_LANES;
-use super::setup::{Alive, Purpose, Setup};
+use super::setup::{Alive, Purpose, Setup, VERTEX_MARGIN};
 use super::survivors::{Corner, ROOM, Survivors};
 use crate::buffer::{Buffer, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::Simd;
 use crate::statistics::Tally;
+
+/// Pieces of the screen, in columns and rows: from and to of each, in 1/256 pixel.
+pub(crate) struct Cuts {
+    columns: Vec<[f32; 2]>,
+    rows: Vec<[f32; 2]>,
+}
+
+impl Cuts {
+    /// Columns and rows, in tiles, begin and end at these.
+    pub fn new(columns: &[u32], rows: &[u32]) -> Self {
+        let spans = |cuts: &[u32], size: u32| -> Vec<[f32; 2]> {
+            cuts.windows(2).map(|cut| [cut[0], cut[1]].map(|tiles| (256 * tiles * size) as f32)).collect()
+        };
+        Self { columns: spans(columns, TILE_WIDTH), rows: spans(rows, TILE_HEIGHT) }
+    }
+
+    fn pieces(&self) -> usize {
+        self.columns.len() * self.rows.len()
+    }
+}
 
 /// Triangles on the screen, in order.
 #[derive(Default)]
@@ -22,13 +42,17 @@ pub(crate) struct Kept {
     used: usize,
 }
 
+/// No instruction set has shorter vectors in the pipeline.
+const VECTORS: usize = ROOM / 8;
+
+/// Triangles that have to be asked alike whether they face the eye.
 struct Block {
     survivors: Box<Survivors>,
-    /// A box around all of them: x and y from, x and y to, in 1/256 pixel.
-    bounds: [f32; 4],
+    both_sides: bool,
+    vectors: usize,
+    /// For each piece of the screen, for each vector, the triangles that reach it.
+    reach: Vec<u16>,
 }
-
-const NOWHERE: [f32; 4] = [f32::MAX, f32::MAX, f32::MIN, f32::MIN];
 
 impl Kept {
     /// Forgets the triangles; the memory stays.
@@ -38,62 +62,93 @@ impl Kept {
 
     /// A block with room for a vector.
     #[inline(always)]
-    fn open<S: Simd>(&mut self) -> &mut Block {
-        let full = self.used == 0 || self.blocks[self.used - 1].survivors.len() + S::LANES > ROOM;
-        if full {
-            self.next_block();
+    fn open(&mut self, both_sides: bool, pieces: usize, lanes: usize) -> &mut Block {
+        let fits = |block: &Block| {
+            block.both_sides == both_sides && (block.vectors + 1) * lanes <= ROOM
+        };
+        if self.used == 0 || !fits(&self.blocks[self.used - 1]) {
+            self.next_block(both_sides, pieces);
         }
         &mut self.blocks[self.used - 1]
     }
 
     #[cold]
-    fn next_block(&mut self) {
+    fn next_block(&mut self, both_sides: bool, pieces: usize) {
         if self.used == self.blocks.len() {
-            self.blocks.push(Block { survivors: Survivors::boxed(), bounds: NOWHERE });
+            let survivors = Survivors::boxed();
+            self.blocks.push(Block { survivors, both_sides, vectors: 0, reach: Vec::new() });
         }
         let block = &mut self.blocks[self.used];
         block.survivors.clear();
-        block.bounds = NOWHERE;
+        (block.both_sides, block.vectors) = (both_sides, 0);
+        block.reach.resize(pieces * VECTORS, 0);
         self.used += 1;
     }
 }
 
 /// The last step that keeps triangles.
-pub(super) struct Keep<'a, S> {
-    s: S,
+pub(super) struct Keep<'a> {
     kept: &'a mut Kept,
+    cuts: &'a Cuts,
+    /// What the buffer hides already is left out. Other threads may be drawing.
+    sift: bool,
 }
 
-impl<'a, S: Simd> Keep<'a, S> {
+impl<'a> Keep<'a> {
     #[inline(always)]
-    pub fn new(s: S, kept: &'a mut Kept) -> Self {
-        Self { s, kept }
+    pub fn new(kept: &'a mut Kept, cuts: &'a Cuts, sift: bool) -> Self {
+        Self { kept, cuts, sift }
     }
 }
 
-impl<S: Simd> LastStep for Keep<'_, S> {
-    const PURPOSE: Purpose = Purpose::Bin;
+impl LastStep for Keep<'_> {
+    const PURPOSE: Purpose = Purpose::Draw;
+    const KEEPS: bool = true;
 
     #[inline(always)]
-    fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
-        let s = self.s;
-        tally.rasterized += u64::from(alive.rasterized.count_ones());
-        // SAFETY: setup stores the corners of triangles that are to be kept; the arrays hold a vector.
-        let of = |lanes: &Lanes<f32>| unsafe { s.load_f(lanes.as_ptr()) };
-        let c = batch.corners.each_ref().map(of);
-        let corners = [[c[0], c[1], c[2]], [c[3], c[4], c[5]], [c[6], c[7], c[8]]];
-        let lanes = lanes_of(s, alive.lanes);
-        let block = self.kept.open::<S>();
+    fn keep<S: Simd>(&mut self, setup: Setup<'_, S>, corners: &[Corner<S>; 3], active: S::M) {
+        let Setup { s, buffer, .. } = setup;
+        let [a, b, c] = corners;
+        let mut open = active;
+        if self.sift {
+            let boxes = Boxes::new(s, buffer, Purpose::Draw, corners);
+            let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
+            let look = Look { racing: true, ..setup.look };
+            // SAFETY: whoever draws meanwhile stores least depths as words, in which old ones are safe.
+            let hidden = unsafe { boxes.hidden(s, buffer, look, Purpose::Draw, nearest) };
+            open = s.and_not_m(hidden, s.and_m(active, boxes.inside));
+        }
+        let bits = s.mask_bits(open);
+        if bits == 0 {
+            return;
+        }
+        // All lanes are stored: who draws a piece closes the gaps, for it takes some lanes only anyway.
+        let block = self.kept.open(setup.both_sides, self.cuts.pieces(), S::LANES);
+        let k = block.vectors;
+        block.vectors += 1;
+        let kept = |m: S::M| (s.mask_bits(m) & bits) as u16;
+        let within = |[from, to]: [f32; 2], low: S::F, high: S::F| s.and_m(s.le(s.f(from), high), s.le(low, s.f(to)));
+        let low = |axis: usize| s.min(a[axis], s.min(b[axis], c[axis]));
+        let high = |axis: usize| s.max(a[axis], s.max(b[axis], c[axis]));
+        let (x0, x1, y0, y1) = (low(0), high(0), low(1), high(1));
+        for (column, &span) in self.cuts.columns.iter().enumerate() {
+            let reach = kept(within(span, x0, x1));
+            for row in 0..self.cuts.rows.len() {
+                block.reach[(row * self.cuts.columns.len() + column) * VECTORS + k] = reach;
+            }
+        }
+        for (row, &span) in self.cuts.rows.iter().enumerate() {
+            let reach = kept(within(span, y0, y1));
+            for column in 0..self.cuts.columns.len() {
+                block.reach[(row * self.cuts.columns.len() + column) * VECTORS + k] &= reach;
+            }
+        }
         // SAFETY: the block has room for a vector.
-        unsafe { block.survivors.append(s, lanes, &corners) };
-        let [from_x, from_y, to_x, to_y] = around(s, &corners);
-        let [x0, y0, x1, y1] = block.bounds;
-        block.bounds = [
-            x0.min(least(s, s.select(lanes, from_x, s.f(f32::MAX)))),
-            y0.min(least(s, s.select(lanes, from_y, s.f(f32::MAX)))),
-            x1.max(-least(s, s.select(lanes, s.sub(s.f(0.0), to_x), s.f(f32::MAX)))),
-            y1.max(-least(s, s.select(lanes, s.sub(s.f(0.0), to_y), s.f(f32::MAX)))),
-        ];
+        unsafe { block.survivors.put(s, corners) };
+    }
+
+    #[inline(always)]
+    fn take(&mut self, _: &Batch, _: &Alive, _: &mut Tally) -> bool {
         true
     }
 }
@@ -104,33 +159,28 @@ pub(super) fn draw<'k, S: Simd, L: LastStep>(
     s: S,
     buffer: &Buffer,
     kept: impl Iterator<Item = &'k Kept>,
-    clip: TileRect,
+    (clip, piece): (TileRect, usize),
     last: &mut L,
 ) -> Tally {
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
-    // The corners were put in order when the triangles were kept.
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, clip, areas: true };
+    let look = Look { clip, areas: true, racing: false };
+    let mut setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, look };
     let mut tally = Tally::default();
-    let pixels = |tiles: u32, size: u32| (256 * tiles * size) as f32;
-    let from = [pixels(clip.x0, TILE_WIDTH), pixels(clip.y0, TILE_HEIGHT)];
-    let to = [pixels(clip.x1, TILE_WIDTH), pixels(clip.y1, TILE_HEIGHT)];
     for block in kept.flat_map(|kept| &kept.blocks[..kept.used]) {
-        let [x0, y0, x1, y1] = block.bounds;
-        if x1 < from[0] || y1 < from[1] || x0 > to[0] || y0 > to[1] {
-            continue;
+        if block.both_sides != setup.both_sides {
+            take_survivors(setup, survivors, None, All::Yes, &mut batch, last, &mut tally);
+            setup.both_sides = block.both_sides;
         }
-        let mut first = 0;
-        while first < block.survivors.len() {
-            let corners = block.survivors.loaded(s, first);
-            let [x0, y0, x1, y1] = around(s, &corners);
-            let across = s.and_m(s.le(s.f(from[0]), x1), s.le(x0, s.f(to[0])));
-            let down = s.and_m(s.le(s.f(from[1]), y1), s.le(y0, s.f(to[1])));
-            let overlap = s.and_m(s.first(block.survivors.len() - first), s.and_m(across, down));
+        let reach = &block.reach[piece * VECTORS..][..block.vectors];
+        for (k, &reach) in reach.iter().enumerate() {
+            if reach == 0 {
+                continue;
+            }
+            let corners = block.survivors.loaded(s, k * S::LANES);
             // SAFETY: below a vector less than `ROOM` there is room.
-            unsafe { survivors.append(s, overlap, &corners) };
-            first += S::LANES;
+            unsafe { survivors.append(s, lanes_of(s, u32::from(reach)), &corners) };
             if survivors.len() > ROOM - MAX_LANES {
                 take_survivors(setup, survivors, None, All::No, &mut batch, last, &mut tally);
             }
@@ -138,27 +188,6 @@ pub(super) fn draw<'k, S: Simd, L: LastStep>(
     }
     take_survivors(setup, survivors, None, All::Yes, &mut batch, last, &mut tally);
     tally
-}
-
-/// Boxes around the triangles of a vector: x and y from, x and y to.
-#[inline(always)]
-fn around<S: Simd>(s: S, [a, b, c]: &[Corner<S>; 3]) -> [S::F; 4] {
-    let low = |k: usize| s.min(a[k], s.min(b[k], c[k]));
-    let high = |k: usize| s.max(a[k], s.max(b[k], c[k]));
-    [low(0), low(1), high(0), high(1)]
-}
-
-/// The least lane.
-#[inline(always)]
-fn least<S: Simd>(s: S, x: S::F) -> f32 {
-    let mut lanes = [f32::MAX; MAX_LANES];
-    // SAFETY: the array holds a vector.
-    unsafe { s.store_f(lanes.as_mut_ptr(), x) };
-    let mut least = f32::MAX;
-    for lane in lanes {
-        least = least.min(lane);
-    }
-    least
 }
 
 /// A mask of the lanes whose bits are set.

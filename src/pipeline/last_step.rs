@@ -26,6 +26,13 @@ pub(super) trait LastStep {
     /// Takes the triangles that are alive, in order. False: no more are needed.
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool;
 
+    /// Is it given survivors before they are set up?
+    const KEEPS: bool = false;
+
+    /// Is given survivors; what setup makes of them is for later.
+    #[inline(always)]
+    fn keep<S: Simd>(&mut self, _setup: Setup<'_, S>, _corners: &[Corner<S>; 3], _active: S::M) {}
+
     /// Did any triangle come to anything? One can have its box on the screen and touch no pixel.
     #[inline(always)]
     fn found(&self) -> bool {
@@ -66,6 +73,10 @@ pub(super) fn take_survivors<S: Simd, L: LastStep>(
             }
             None => break,
         };
+        if L::KEEPS {
+            last.keep(setup, &corners, active);
+            continue;
+        }
         let alive = set_up(setup, corners, active, batch);
         if alive.rasterized != 0 && !last.take(batch, &alive, tally) {
             return false;
@@ -107,8 +118,8 @@ impl<T: Simd> LastStep for Draw<'_, T> {
 
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
-        tally.rasterized += u64::from(alive.rasterized.count_ones());
         if self.buffer.statistics() {
+            tally.rasterized += begun_in(batch, alive.rasterized, self.clip);
             tally.traversed += tiles_in(batch, alive.rasterized, self.clip);
             let (updated, merged) = self.update::<true>(batch, alive);
             (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);
@@ -154,6 +165,16 @@ impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
     fn run(mut self, t: T) -> (Option<u32>, S) {
         (traverse(t, self.way, &mut self.step), self.step)
     }
+}
+
+/// How many of the triangles in `lanes` have the first tile of their box in a rectangle: cut into pieces, a screen counts each
+/// once.
+fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+    let begun = |&lane: &usize| {
+        let [x0, _, y0, _] = batch.tiles(lane);
+        (clip.x0..clip.x1).contains(&x0) && (clip.y0..clip.y1).contains(&y0)
+    };
+    bits(lanes).filter(begun).count() as u64
 }
 
 /// Tiles of the boxes of the triangles in `lanes`, inside of a rectangle.

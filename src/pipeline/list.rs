@@ -1,6 +1,7 @@
 //! Triangle lists back into the stream: projected already, but from memory that the caller could write to.
 
 use super::batch::Batch;
+use super::boxes::Look;
 use super::last_step::{All, LastStep, take_survivors};
 use super::project::{FARTHEST_W, GUARD_BAND, NEAREST_W};
 use super::setup::Setup;
@@ -23,7 +24,8 @@ pub(super) fn draw<S: Simd, L: LastStep>(
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
     // The corners were put in order when the list was filled.
-    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, clip, areas: false };
+    let look = Look { clip, areas: false, racing: false };
+    let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, look };
     let mut tally = Tally { processed: list.len() as u64, ..Tally::default() };
     let mut position = 0;
     while position < list.len() {

@@ -42,7 +42,7 @@ use crate::vertices::VertexSource;
 use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation};
 
 use kept::Keep;
-pub(crate) use kept::Kept;
+pub(crate) use kept::{Cuts, Kept};
 use last_step::{Bins, Draw, Query};
 pub(crate) use project::{Camera, transform};
 
@@ -134,7 +134,8 @@ pub(crate) unsafe fn draw_list(
     simd::run(implementation, DrawList { buffer, list, scissor })
 }
 
-/// Projects a mesh and keeps what may be drawn, after what was kept before.
+/// Projects a mesh and keeps what may be drawn, for some pieces of the screen, after what was kept before. `sift`: without what the buffer hides already;
+/// meanwhile other threads may be drawing into it by [`draw_kept`], but not clearing it.
 ///
 /// # Safety
 /// Every vertex from the lowest to the highest that the mesh names can be read.
@@ -143,13 +144,14 @@ pub(crate) unsafe fn keep(
     buffer: &Buffer,
     camera: &Camera,
     mesh: &Mesh<'_>,
+    (cuts, sift): (&Cuts, bool),
     kept: &mut Kept,
 ) -> Tally {
-    simd::run(implementation, KeepMesh { buffer, camera, mesh, kept })
+    simd::run(implementation, KeepMesh { buffer, camera, mesh, cuts, sift, kept })
 }
 
-/// Draws what was kept, in order, inside of a rectangle of tiles that begins with an area and ends with one or at the
-/// buffer's end. `drawn` counts for the rectangle when its areas are due.
+/// Draws what was kept, in order, inside of a piece of the screen: a rectangle of tiles that begins with an area and ends with
+/// one or at the buffer's end, and its number among the cuts that it was kept for. `drawn` counts for the rectangle when its areas are due.
 ///
 /// # Safety
 /// Nobody else uses the rectangle's tiles and areas.
@@ -157,10 +159,10 @@ pub(crate) unsafe fn draw_kept<'a>(
     implementation: Implementation,
     buffer: &Buffer,
     kept: impl Iterator<Item = &'a Kept>,
-    clip: TileRect,
+    (clip, piece): (TileRect, usize),
     drawn: &mut u32,
 ) -> Tally {
-    simd::run(implementation, DrawKept { buffer, kept, clip, drawn })
+    simd::run(implementation, DrawKept { buffer, kept, clip, piece, drawn })
 }
 
 /// The largest of the indices.
@@ -232,6 +234,8 @@ struct KeepMesh<'a> {
     buffer: &'a Buffer,
     camera: &'a Camera,
     mesh: &'a Mesh<'a>,
+    cuts: &'a Cuts,
+    sift: bool,
     kept: &'a mut Kept,
 }
 
@@ -240,7 +244,7 @@ impl Job for KeepMesh<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Tally {
-        let mut last = Keep::new(s, self.kept);
+        let mut last = Keep::new(self.kept, self.cuts, self.sift);
         cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last).1
     }
 }
@@ -249,6 +253,7 @@ struct DrawKept<'a, I> {
     buffer: &'a Buffer,
     kept: I,
     clip: TileRect,
+    piece: usize,
     drawn: &'a mut u32,
 }
 
@@ -258,6 +263,6 @@ impl<'k, I: Iterator<Item = &'k Kept>> Job for DrawKept<'_, I> {
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Tally {
         let mut last = Draw::inside(s, self.buffer, self.clip, Some(self.drawn));
-        kept::draw(s, self.buffer, self.kept, self.clip, &mut last)
+        kept::draw(s, self.buffer, self.kept, (self.clip, self.piece), &mut last)
     }
 }

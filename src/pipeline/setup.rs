@@ -19,10 +19,10 @@
 //! The margin is `32 u (Z + gx ex + gy ey)`. On slivers it is large, and the clamp decides.
 
 use super::batch::Batch;
-use super::boxes::{Boxes, QUERY_SLACK};
+use super::boxes::{Boxes, Look, QUERY_SLACK};
 use super::edges;
 use super::survivors::Corner;
-use crate::buffer::{Buffer, TileRect};
+use crate::buffer::Buffer;
 use crate::simd::Simd;
 
 /// Beyond this, in 1/256 pixel, edges are set up one by one.
@@ -34,7 +34,7 @@ const BEYOND: f32 = (1 << 20) as f32;
 /// 32 roundings.
 const MARGIN: f32 = 32.0 / (1 << 24) as f32;
 /// One unit in the last place and a half: from a vertex's rounded 1/w to a bound of the true one.
-const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
+pub(super) const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
 
 /// What the last step wants of setup.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,10 +61,8 @@ pub(super) struct Setup<'a, S> {
     pub buffer: &'a Buffer,
     /// Corners may be in either order.
     pub both_sides: bool,
-    /// The tiles that the last step takes; elsewhere other threads may be drawing.
-    pub clip: TileRect,
-    /// Are their areas kept up to date?
-    pub areas: bool,
+    /// The tiles that the last step takes, and what of them may be looked at.
+    pub look: Look,
 }
 
 /// Sets up the triangles in `active`; the others may be anything.
@@ -75,7 +73,7 @@ pub(super) fn set_up<S: Simd>(
     active: S::M,
     batch: &mut Batch,
 ) -> Alive {
-    let Setup { s, purpose, buffer, both_sides, clip, areas } = setup;
+    let Setup { s, purpose, buffer, both_sides, look } = setup;
     let query = purpose == Purpose::Query;
     let boxes = Boxes::new(s, buffer, purpose, &[a, b, c]);
     let inside = s.and_m(active, boxes.inside);
@@ -83,7 +81,7 @@ pub(super) fn set_up<S: Simd>(
     let mut hidden = 0;
     if purpose != Purpose::Bin {
         // SAFETY: the pipeline's caller vouches for the buffer.
-        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, (clip, areas), purpose, nearest) });
+        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, look, purpose, nearest) });
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();

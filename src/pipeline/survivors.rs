@@ -80,6 +80,23 @@ impl Survivors {
         self.len += n;
     }
 
+    /// Appends a vector, all lanes of it.
+    ///
+    /// # Safety
+    /// There is room for it.
+    #[inline(always)]
+    pub unsafe fn put<S: Simd>(&mut self, s: S, corners: &[Corner<S>; 3]) {
+        debug_assert!(self.len + S::LANES <= ROOM + MAX_LANES);
+        for k in 0..9 {
+            // SAFETY: the caller's contract.
+            unsafe {
+                let to = self.lanes.get_unchecked_mut(k).as_mut_ptr().add(self.len);
+                s.store_f(to.cast(), corners[k / 3][k % 3]);
+            }
+        }
+        self.len += S::LANES;
+    }
+
     /// The vector of triangles from `first` on; what comes after the last is all zeros.
     #[inline(always)]
     pub fn vector<S: Simd>(&mut self, s: S, first: usize) -> [Corner<S>; 3] {

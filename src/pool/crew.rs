@@ -132,6 +132,8 @@ impl Crew {
         let weight = call.indices / 3;
         let mut state = self.lock();
         loop {
+            // Under the lock: with the order of calls that of clears is settled.
+            call.clears = state.target.as_ref().map_or(0, |target| target.clears());
             match state.schedule.submit(call, weight) {
                 Ok(worthwhile) => {
                     if worthwhile && state.idle > 0 && !state.suspended {

@@ -1,26 +1,39 @@
 //! Cuts a buffer into bins: rectangles of whole areas (128x64 pixels), so that each bin keeps its areas up to date by itself and
 //! no two bins share a block.
 
-use crate::buffer::TileRect;
+use crate::buffer::{TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::buffer::areas::{AREA_TILES_H, AREA_TILES_W};
+use crate::pipeline::Cuts;
 
 /// The bins, row by row.
 pub(super) struct Grid {
     /// Where columns and rows begin, in tiles, and where the last ends.
     columns: Vec<u32>,
     rows: Vec<u32>,
+    cuts: Cuts,
 }
 
 impl Grid {
-    /// As equal as areas allow. More bins than areas are as many as areas.
-    pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32) -> Self {
+    /// As equal as areas allow; not more bins than `most` or than areas.
+    pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32, most: u32) -> Self {
+        let (mut bins_w, mut bins_h) = (bins_w.clamp(1, tiles.x1), bins_h.clamp(1, tiles.y1));
+        while bins_w * bins_h > most.max(1) {
+            // The longer side of what is left stays cut.
+            let wide = bins_w > 1 && (bins_h == 1 || tiles.x1 * TILE_WIDTH * bins_h < tiles.y1 * TILE_HEIGHT * bins_w);
+            if wide { bins_w -= 1 } else { bins_h -= 1 }
+        }
         let cut = |tiles: u32, bins: u32, area: u32| -> Vec<u32> {
             let areas = tiles.div_ceil(area);
             let bins = bins.clamp(1, areas);
             let begin = |k: u32| (u64::from(k) * u64::from(areas) / u64::from(bins)) as u32 * area;
             (0..bins).map(begin).chain([tiles]).collect()
         };
-        Self { columns: cut(tiles.x1, bins_w, AREA_TILES_W), rows: cut(tiles.y1, bins_h, AREA_TILES_H) }
+        let (columns, rows) = (cut(tiles.x1, bins_w, AREA_TILES_W), cut(tiles.y1, bins_h, AREA_TILES_H));
+        Self { cuts: Cuts::new(&columns, &rows), columns, rows }
+    }
+
+    pub fn cuts(&self) -> &Cuts {
+        &self.cuts
     }
 
     pub fn len(&self) -> usize {
@@ -51,8 +64,11 @@ mod tests {
     #[test]
     fn bins_cover_every_tile_once_and_begin_with_areas() {
         for (w, h) in [(1, 1), (60, 135), (512, 2048), (5, 9), (4, 8)] {
-            for (bins_w, bins_h) in [(1, 1), (4, 4), (3, 7), (u32::MAX, u32::MAX), (0, 0)] {
-                let grid = Grid::new(TileRect { x0: 0, y0: 0, x1: w, y1: h }, bins_w, bins_h);
+            for (bins_w, bins_h, most) in
+                [(1, 1, 9), (4, 4, 16), (4, 4, 8), (3, 7, 1), (u32::MAX, u32::MAX, 100), (0, 0, 4)]
+            {
+                let grid = Grid::new(TileRect { x0: 0, y0: 0, x1: w, y1: h }, bins_w, bins_h, most);
+                    assert!(grid.len() as u32 <= most);
                 let mut seen = vec![0; (w * h) as usize];
                 for bin in 0..grid.len() {
                     let t = grid.tiles(bin);

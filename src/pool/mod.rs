@@ -27,8 +27,10 @@ use std::thread::{self, JoinHandle};
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
 use crew::Crew;
-use target::{Call, Shared, Target, Work};
+use target::{Bins, Call, Shared, Target, Work};
 
+/// More bins bring threads no more to do: triangles that reach several are set up for each.
+const BINS_A_THREAD: u32 = 4;
 /// Larger calls are cut, so that several threads can project them.
 const CALL_TRIANGLES: usize = 1536;
 
@@ -38,7 +40,7 @@ const CALL_TRIANGLES: usize = 1536;
 pub struct CullingThreadpool {
     crew: Arc<Crew>,
     threads: Vec<JoinHandle<()>>,
-    bins: (u32, u32),
+    bins: Bins,
     /// Who flushes works, too.
     helps: bool,
     /// The bits of the near plane; NaN while only the object's own counts.
@@ -63,8 +65,8 @@ impl CullingThreadpool {
         let mut pool = Self {
             crew: Arc::new(Crew::new(max_jobs as usize)),
             threads: Vec::new(),
-            bins: (bins_w, bins_h),
-            helps: std::env::var("NOHELP").is_err() || (threads as usize) < processors,
+            bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
+            helps: true || (threads as usize) < processors,
             near: AtomicU32::new(f32::NAN.to_bits()),
             target: RwLock::new(None),
         };
@@ -127,7 +129,7 @@ impl CullingThreadpool {
         let mut gate = self.gate();
         self.flush();
         // SAFETY: the caller's contract.
-        let new = moc.map(|(moc, owned)| Arc::new(unsafe { Target::new(moc, owned, self.bins.0, self.bins.1) }));
+        let new = moc.map(|(moc, owned)| Arc::new(unsafe { Target::new(moc, owned, self.bins) }));
         if let Some(target) = &new {
             // NaN is refused: none was set.
             let _ = target.moc().set_near_shared(f32::from_bits(self.near.load(Relaxed)));
@@ -155,7 +157,7 @@ impl CullingThreadpool {
         self.crew.set_target(None);
         // Nobody else holds it: threads let go of it before they report what they did.
         if let Some(target) = gate.take().and_then(Arc::into_inner) {
-            *gate = Some(Arc::new(target.resized(self.bins.0, self.bins.1)));
+            *gate = Some(Arc::new(target.resized(self.bins)));
         }
         self.crew.set_target(gate.clone());
     }
@@ -227,7 +229,7 @@ impl CullingThreadpool {
             let near = target.moc().near_clip_plane();
             for piece in triangles.chunks(3 * CALL_TRIANGLES) {
                 let (triangles, indices) = (piece.as_ptr(), piece.len());
-                self.crew.submit(Call { vertices, triangles, indices, options: *options, near });
+                self.crew.submit(Call { vertices, triangles, indices, options: *options, near, clears: 0 });
             }
             Ok(())
         })

@@ -15,6 +15,8 @@ pub(super) const BATCH_WEIGHT: usize = 2048;
 pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch that weighs so much is worth a thread's while.
 pub(super) const WORTHWHILE: usize = 512;
+/// So many batches may be ready that some bin did not draw, before drawing goes first.
+const LEAD: u64 = 4;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 8;
 
@@ -135,7 +137,10 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// Something to do, if there is. `bin`: the one to draw in by preference, which is in this thread's cache.
     pub fn claim(&mut self, bin: usize) -> Option<Task<C, W>> {
-        self.claim_batch(WORTHWHILE).or_else(|| self.claim_bin(bin)).or_else(|| self.claim_batch(0))
+        let behind = self.bins.iter().map(|bin| bin.next).min().map_or(0, |next| self.ready.saturating_sub(next));
+        // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
+        let ahead = if behind < LEAD { self.claim_batch(WORTHWHILE) } else { None };
+        ahead.or_else(|| self.claim_bin(bin)).or_else(|| self.claim_batch(0))
     }
 
     /// The first batch that nobody keeps, unless it is the last one and weighs less.

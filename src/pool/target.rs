@@ -17,10 +17,21 @@ pub(super) struct Call {
     pub indices: usize,
     pub options: DrawOptions,
     pub near: f32,
+    /// Clears that were submitted before it; the crew counts.
+    pub clears: u64,
 }
 
 // SAFETY: who submitted it vouches that what it points to stays as it is until the pool was flushed.
 unsafe impl Send for Call {}
+
+/// How many bins are wanted.
+#[derive(Clone, Copy)]
+pub(super) struct Bins {
+    pub wide: u32,
+    pub high: u32,
+    /// In all.
+    pub most: u32,
+}
 
 /// What a bin takes in.
 pub(super) enum Work {
@@ -41,8 +52,6 @@ unsafe impl Sync for Shared {}
 /// What goes with the lock of a bin.
 #[derive(Default)]
 struct Piece {
-    /// Clears that it saw.
-    clears: u64,
     /// When its areas are due; see `areas.rs`.
     drawn: u32,
 }
@@ -50,7 +59,11 @@ struct Piece {
 /// On a cache line of its own, so that threads in neighbouring bins do not slow each other down.
 #[repr(align(64))]
 #[derive(Default)]
-struct Bin(RwLock<Piece>);
+struct Bin {
+    piece: RwLock<Piece>,
+    /// Clears that it saw.
+    clears: AtomicU64,
+}
 
 pub(super) struct Target {
     moc: Shared,
@@ -68,10 +81,10 @@ impl Target {
     /// # Safety
     /// The object stays where it is until the target is dropped; meanwhile it is used through the target only, or
     /// while nothing is in flight.
-    pub unsafe fn new(moc: NonNull<MaskedOcclusionCulling>, owned: bool, bins_w: u32, bins_h: u32) -> Self {
+    pub unsafe fn new(moc: NonNull<MaskedOcclusionCulling>, owned: bool, bins: Bins) -> Self {
         // SAFETY: the caller's contract.
         let tiles = tiles_of(unsafe { moc.as_ref() });
-        let grid = Grid::new(tiles, bins_w, bins_h);
+        let grid = Grid::new(tiles, bins.wide, bins.high, bins.most);
         let bins = (0..grid.len()).map(|_| Bin::default()).collect();
         Self { moc: Shared(moc), owned, tiles, grid, bins, clears: AtomicU64::new(0) }
     }
@@ -99,12 +112,24 @@ impl Target {
         self.clears.fetch_add(1, Ordering::AcqRel) + 1
     }
 
+    /// Clears that were submitted so far.
+    pub fn clears(&self) -> u64 {
+        self.clears.load(Ordering::Acquire)
+    }
+
+    /// Did all bins see the clears before a call? Then what is in the buffer was drawn before it, and since.
+    fn is_cleared(&self, clears: u64) -> bool {
+        self.bins.iter().all(|bin| bin.clears.load(Ordering::Acquire) >= clears)
+    }
+
     /// Projects calls.
     ///
     /// # Safety
     /// What they point to can be read.
     pub unsafe fn keep(&self, calls: &[Call], kept: &mut Kept) {
         kept.clear();
+        let clears = calls.iter().map(|call| call.clears).max();
+        let sift = clears.is_some_and(|clears| self.is_cleared(clears));
         for call in calls {
             // SAFETY: the caller's contract; an array of no triangles may be anywhere.
             let triangles = match call.indices {
@@ -112,7 +137,7 @@ impl Target {
                 n => unsafe { core::slice::from_raw_parts(call.triangles, n) },
             };
             // SAFETY: the caller's contract.
-            let done = unsafe { self.moc().keep(call.vertices, triangles, &call.options, call.near, kept) };
+            let done = unsafe { self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept) };
             debug_assert_eq!(done, Ok(()), "a target has a buffer");
         }
     }
@@ -120,7 +145,7 @@ impl Target {
     /// Does some work, in order, in a bin.
     pub fn draw(&self, bin: usize, work: &[Arc<Work>]) {
         let clip = self.grid.tiles(bin);
-        let mut piece = self.bins[bin].0.write().unwrap_or_else(PoisonError::into_inner);
+        let mut piece = self.bins[bin].piece.write().unwrap_or_else(PoisonError::into_inner);
         for run in work.chunk_by(|a, b| matches!((&**a, &**b), (Work::Triangles(..), Work::Triangles(..)))) {
             match &*run[0] {
                 Work::Triangles(..) => {
@@ -129,7 +154,7 @@ impl Target {
                         _ => None,
                     });
                     // SAFETY: whoever has the bin's lock for writing has its tiles and areas to itself.
-                    let done = unsafe { self.moc().draw_kept(kept, clip, &mut piece.drawn) };
+                    let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
                     debug_assert_eq!(done, Ok(()), "a target has a buffer");
                 }
                 Work::Clear(number) => {
@@ -137,7 +162,9 @@ impl Target {
                         // SAFETY: as above.
                         unsafe { buffer.clear_tiles(clip) };
                     }
-                    *piece = Piece { clears: *number, drawn: 0 };
+                    piece.drawn = 0;
+                    // After the tiles, for those who look at them without the lock.
+                    self.bins[bin].clears.store(*number, Ordering::Release);
                 }
                 Work::Merge(others) => self.merge(others, clip),
             }
@@ -161,23 +188,25 @@ impl Target {
         ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
     ) -> Result<CullingResult, Error> {
         let clears = self.clears.load(Ordering::Acquire);
-        let read = |bin: usize| self.bins[bin].0.read().unwrap_or_else(PoisonError::into_inner);
+        let read = |bin: usize| self.bins[bin].piece.read().unwrap_or_else(PoisonError::into_inner);
         // Most rectangles lie in one bin, for which no list is allocated.
         let mut bins = self.grid.touched(tiles);
         let first: Option<RwLockReadGuard<'_, Piece>> = bins.next().map(read);
         let rest: Vec<RwLockReadGuard<'_, Piece>> = bins.map(read).collect();
-        let stale = first.iter().chain(&rest).any(|piece| piece.clears < clears);
-        match ask(self.moc())? {
+        let stale = self.grid.touched(tiles).any(|bin| self.bins[bin].clears.load(Ordering::Acquire) < clears);
+        let result = ask(self.moc());
+        drop((first, rest));
+        match result? {
             CullingResult::Occluded if stale => Ok(CullingResult::Visible),
             result => Ok(result),
         }
     }
 
     /// The same after its object got another resolution.
-    pub fn resized(mut self, bins_w: u32, bins_h: u32) -> Self {
+    pub fn resized(mut self, bins: Bins) -> Self {
         let owned = core::mem::take(&mut self.owned);
         // SAFETY: `self`'s contract goes on.
-        unsafe { Self::new(self.moc.0, owned, bins_w, bins_h) }
+        unsafe { Self::new(self.moc.0, owned, bins) }
     }
 
     /// The object, if it goes with the pool.

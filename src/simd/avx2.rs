@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Apart, Job, Simd, record};
+use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
@@ -220,7 +220,7 @@ impl Simd for Avx2 {
         unsafe {
             let m = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
             let m = _mm_min_ps(m, _mm_movehl_ps(m, m));
-            p.write(_mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
+            store_relaxed(p, _mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
         }
     }
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Apart, Job, Simd, record};
+use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(());
@@ -344,8 +344,8 @@ impl Simd for Avx512 {
             let m = self.min_positive(a, _mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
             let m = self.min_positive(m, _mm512_permute_ps::<0b01_00_11_10>(m));
             let m = self.min_positive(m, _mm512_permute_ps::<0b10_11_00_01>(m));
-            p.write(_mm512_cvtss_f32(m));
-            p.add(pitch).write(_mm_cvtss_f32(_mm512_extractf32x4_ps::<2>(m)));
+            store_relaxed(p, _mm512_cvtss_f32(m));
+            store_relaxed(p.add(pitch), _mm_cvtss_f32(_mm512_extractf32x4_ps::<2>(m)));
         }
     }
     #[inline(always)]

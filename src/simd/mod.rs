@@ -25,6 +25,8 @@ mod sse;
 #[cfg(test)]
 mod tests;
 
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
 use crate::Implementation;
 
 /// No vector has more lanes.
@@ -200,6 +202,21 @@ pub(crate) trait Simd: Copy {
         // SAFETY: the caller's contract.
         self.select_i(self.first(n), unsafe { self.load_some(p, n) }, self.i(fill as i32))
     }
+    /// [`Self::gather`] from words that other threads may be writing with [`store_relaxed`].
+    /// # Safety
+    /// Every `p + index` can be read.
+    #[inline(always)]
+    unsafe fn gather_relaxed(self, p: *const f32, index: Self::I) -> Self::F {
+        let (mut indices, mut words) = ([0_u32; MAX_LANES], [0_u32; MAX_LANES]);
+        // SAFETY: the arrays hold a vector; the caller's contract.
+        unsafe {
+            self.store_i(indices.as_mut_ptr(), index);
+            for lane in 0..Self::LANES {
+                words[lane] = AtomicU32::from_ptr(p.add(indices[lane] as usize).cast_mut().cast()).load(Relaxed);
+            }
+            self.load_f(words.as_ptr().cast())
+        }
+    }
     /// A mask of the first `n` lanes.
     #[inline(always)]
     fn first(self, n: usize) -> Self::M {
@@ -218,6 +235,16 @@ pub(crate) trait Simd: Copy {
     fn div_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn min_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn max_d(self, a: Self::D, b: Self::D) -> Self::D;
+}
+
+/// Writes a word that other threads may be reading.
+///
+/// # Safety
+/// It can be written, and nobody else writes it.
+#[inline(always)]
+pub(crate) unsafe fn store_relaxed(p: *mut f32, x: f32) {
+    // SAFETY: the caller's contract.
+    unsafe { AtomicU32::from_ptr(p.cast()) }.store(x.to_bits(), Relaxed);
 }
 
 /// Address of record `index[3 * lane]` of four floats.

@@ -4,7 +4,7 @@ use core::arch::aarch64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record};
+use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
 pub(super) struct Neon(());
@@ -225,7 +225,7 @@ impl Simd for Neon {
     #[inline(always)]
     unsafe fn store_least(self, p: *mut f32, _: usize, a: Self::F) {
         // SAFETY: the token, and the caller's contract.
-        unsafe { p.write(vminvq_f32(a)) }
+        unsafe { store_relaxed(p, vminvq_f32(a)) }
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> int32x4_t {

@@ -1,7 +1,7 @@
 //! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
 
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record};
+use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
@@ -253,7 +253,7 @@ impl Simd for Scalar4 {
     unsafe fn store_least(self, p: *mut f32, _: usize, a: [f32; 4]) {
         let least = |a: f32, b: f32| if a < b { a } else { b };
         // SAFETY: the caller's contract.
-        unsafe { p.write(least(least(a[0], a[1]), least(a[2], a[3]))) }
+        unsafe { store_relaxed(p, least(least(a[0], a[1]), least(a[2], a[3]))) }
     }
 
     #[inline(always)]

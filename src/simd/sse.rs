@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record};
+use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(());
@@ -252,7 +252,7 @@ macro_rules! shared {
             // SAFETY: the token, and the caller's contract.
             unsafe {
                 let m = _mm_min_ps(a, _mm_movehl_ps(a, a));
-                p.write(_mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
+                store_relaxed(p, _mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
             }
         }
         #[inline(always)]
