@@ -1,4 +1,5 @@
-/* Every function of the C interface, with every implementation and update rule that there is. */
+/* Every function of the C interface, with every implementation and update rule that there is. Those of the pool are in
+ * thread_pool_c.c. */
 #include "check.h"
 #include "masked_occlusion_culling.h"
 
@@ -336,6 +337,16 @@ static void merge(int32_t implementation, int32_t rule)
     CHECK_EQ(MOC_MergeBuffer(left, left), MOC_STATUS_OK);
     CHECK_EQ(test_rect(left, -0.5f, -0.5f, 0.5f, 0.5f, 30.0f), MOC_OCCLUDED);
     CHECK_EQ(test_rect(left, -0.5f, -0.5f, 0.5f, 0.5f, 9.0f), MOC_VISIBLE);
+    {
+        const MaskedOcclusionCulling *others[2];
+        others[0] = right;
+        others[1] = left;
+        CHECK_EQ(MOC_MergeBuffers(up, others, 2), MOC_STATUS_SIZE_MISMATCH);
+        CHECK_EQ(MOC_MergeBuffers(left, others, 2), MOC_STATUS_INVALID_ENUM);
+        CHECK_EQ(MOC_MergeBuffers(left, others, 1), MOC_STATUS_OK);
+        CHECK_EQ(test_rect(left, -0.5f, -0.5f, 0.5f, 0.5f, 30.0f), MOC_OCCLUDED);
+        CHECK_EQ(test_rect(left, 0.1f, -0.5f, 0.5f, 0.5f, 11.0f), MOC_VISIBLE);
+    }
     MOC_Destroy(left);
     MOC_Destroy(right);
     MOC_Destroy(up);

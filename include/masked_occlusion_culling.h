@@ -655,10 +655,9 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCul
 
 /**
  * Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
- * faster. `others` may name an object more than once, and `moc` itself not.
+ * faster. Where `others` names `moc` itself, that changes nothing.
  *
- * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array, MOC_STATUS_INVALID_ENUM where it names
- * `moc`: nothing is folded.
+ * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array: nothing is folded.
  *
  * # Safety
  * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
@@ -1120,7 +1119,7 @@ MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *po
  * Errors: as there; nothing is folded.
  *
  * # Safety
- * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. None of the others is the pool's object, and nobody changes or destroys them
+ * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
  * until MOC_ThreadpoolFlush.
  */
 MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,

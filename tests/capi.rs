@@ -33,6 +33,8 @@ const SWITCHES: Program = Program {
 };
 const STATISTICS: Program = Program { name: "statistics", sources: &["statistics.cpp"], cpp: true };
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
+const THREAD_POOL: Program = Program { name: "thread_pool", sources: &["thread_pool.cpp"], cpp: true };
+const THREAD_POOL_C: Program = Program { name: "thread_pool_c", sources: &["thread_pool_c.c"], cpp: false };
 
 /// The compiler that the `cc` crate finds for the target that the library was built for.
 fn compiler(cpp: bool, folder: &Path) -> Command {
@@ -125,6 +127,10 @@ programs! {
     statistics_static: STATISTICS, Library::Static;
     switches_shared: SWITCHES, Library::Shared;
     switches_static: SWITCHES, Library::Static;
+    thread_pool_shared: THREAD_POOL, Library::Shared;
+    thread_pool_static: THREAD_POOL, Library::Static;
+    thread_pool_c_shared: THREAD_POOL_C, Library::Shared;
+    thread_pool_c_static: THREAD_POOL_C, Library::Static;
     threads_shared: THREADS, Library::Shared;
     threads_static: THREADS, Library::Static;
 }
@@ -144,6 +150,16 @@ fn peer_style_under_sanitizers() {
     under_sanitizers(&PEER_STYLE);
 }
 
+#[test]
+fn thread_pool_under_sanitizers() {
+    under_sanitizers(&THREAD_POOL);
+}
+
+#[test]
+fn thread_pool_c_under_sanitizers() {
+    under_sanitizers(&THREAD_POOL_C);
+}
+
 fn under_sanitizers(program: &Program) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let flags = [SANITIZERS, "-fno-sanitize-recover=all"];
@@ -160,7 +176,7 @@ fn under_sanitizers(program: &Program) {
     succeed(&format!("{} under {SANITIZERS}", program.name), &output);
 }
 
-/// Both headers, alone, with every compiler that is here and each standard from the oldest on.
+/// All headers, alone, with every compiler that is here and each standard from the oldest on.
 #[test]
 fn headers_compile_without_warnings() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -171,7 +187,7 @@ fn headers_compile_without_warnings() {
             ["g++", "clang++"],
             "cpp",
             &["c++11", "c++14", "c++17", "c++20"][..],
-            &["masked_occlusion_culling.h", "MaskedOcclusionCulling.h"][..],
+            &["masked_occlusion_culling.h", "MaskedOcclusionCulling.h", "CullingThreadpool.h"][..],
         ),
     ] {
         for header in headers {

@@ -48,6 +48,15 @@ fn bins_and_threads() {
 }
 
 #[test]
+fn thread_pool() {
+    for output in outputs("thread_pool.cpp") {
+        let answers: Vec<&str> = output.lines().filter_map(|l| l.rsplit_once(": ")).map(|(_, a)| a.trim()).collect();
+        assert_eq!(answers[..3], ["occluded", "visible", "occluded"], "{output}");
+        assert!(!answers[3].starts_with("0 "), "{output}");
+    }
+}
+
+#[test]
 fn plain_c() {
     for output in outputs("plain_c.c") {
         assert!(output.contains("behind the square: occluded"), "{output}");

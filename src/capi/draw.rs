@@ -43,10 +43,9 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
 }
 
 /// Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
-/// faster. `others` may name an object more than once, and `moc` itself not.
+/// faster. Where `others` names `moc` itself, that changes nothing.
 ///
-/// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array, MOC_STATUS_INVALID_ENUM where it names
-/// `moc`: nothing is folded.
+/// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array: nothing is folded.
 ///
 /// # Safety
 /// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
@@ -59,10 +58,8 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 ) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
-        let others = unsafe { objects(others, count) }?;
-        if others.iter().any(|&other| core::ptr::eq(other, moc)) {
-            return Err(Error::InvalidEnum);
-        }
+        let mut others = unsafe { objects(others, count) }?;
+        others.retain(|&other| !core::ptr::eq(other, moc));
         // SAFETY: the caller's contract, and none of the others is the same.
         unsafe { object_mut(moc) }?.merge_buffers(&others)
     })

@@ -362,7 +362,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
 /// Errors: as there; nothing is folded.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. None of the others is the pool's object, and nobody changes or destroys them
+/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
 /// until MOC_ThreadpoolFlush.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(

@@ -1,9 +1,10 @@
 //! The threads of a pool: take work, do it, sleep when there is none.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::PoisonError;
 
 use super::schedule::{Schedule, Task};
+use super::sync::{Arc, Condvar, Mutex, MutexGuard};
 use super::target::{Call, Target, Work};
 use crate::pipeline::Kept;
 
@@ -116,9 +117,9 @@ impl Crew {
         state
     }
 
-    /// Does a task or waits until somebody did one.
-    fn help_or_wait<'a>(&'a self, mut state: MutexGuard<'a, State>, help: bool) -> MutexGuard<'a, State> {
-        if help && let Some(task) = state.schedule.claim(0) {
+    /// Does a task, or waits until somebody did one.
+    fn help<'a>(&'a self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
+        if let Some(task) = state.schedule.claim(0) {
             return self.perform(state, task, &mut 0);
         }
         state.waiting += 1;
@@ -143,7 +144,7 @@ impl Crew {
                 }
                 Err(back) => call = back,
             }
-            state = self.help_or_wait(state, true);
+            state = self.help(state);
         }
     }
 
@@ -151,22 +152,21 @@ impl Crew {
     pub fn submit_ready(&self, work: impl FnOnce() -> Work) {
         let mut state = self.lock();
         while state.schedule.is_full() {
-            state = self.help_or_wait(state, true);
+            state = self.help(state);
         }
         // Made under the lock: clears are numbered in the order in which they are done.
         state.schedule.submit_ready(Arc::new(work()));
     }
 
-    /// Waits until everything that was in flight is drawn. `help`: works meanwhile; so it does while the threads are suspended.
-    pub fn flush(&self, help: bool) {
+    /// Works until everything that is in flight is drawn.
+    pub fn flush(&self) {
         let mut state = self.lock();
         if !state.suspended && state.idle > 0 && state.schedule.has_work() {
             self.work.notify_all();
         }
         let end = state.schedule.in_flight().end;
         while state.schedule.in_flight().start < end {
-            let help = help || state.suspended;
-            state = self.help_or_wait(state, help);
+            state = self.help(state);
         }
     }
 
@@ -179,9 +179,7 @@ impl Crew {
 
     pub fn set_suspended(&self, suspended: bool) {
         self.lock().suspended = suspended;
-        // Also those who wait for progress: what the threads leave now, they have to do themselves.
         self.work.notify_all();
-        self.progress.notify_all();
     }
 
     /// Ends [`Self::work`].

@@ -10,12 +10,13 @@
 //! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `target.rs` the bins and
 //! their locks, `grid.rs` the pieces of the screen.
 //!
-//! Threads without work sleep. A caller who finds no room for another batch works until there is; so does who flushes while the
-//! threads are suspended, or are fewer than the machine's processors.
+//! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
+//! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn.
 
 mod crew;
 mod grid;
 mod schedule;
+mod sync;
 mod target;
 
 use core::marker::PhantomData;
@@ -41,8 +42,6 @@ pub struct CullingThreadpool {
     crew: Arc<Crew>,
     threads: Vec<JoinHandle<()>>,
     bins: Bins,
-    /// Who flushes works, too.
-    helps: bool,
     /// The bits of the near plane; NaN while only the object's own counts.
     near: AtomicU32,
     /// Held for reading by who submits or queries, for writing by who exchanges it.
@@ -61,12 +60,10 @@ impl CullingThreadpool {
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 {
             return Err(Error::InvalidSize);
         }
-        let processors = thread::available_parallelism().map_or(1, |n| n.get());
         let mut pool = Self {
             crew: Arc::new(Crew::new(max_jobs as usize)),
             threads: Vec::new(),
             bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
-            helps: true || (threads as usize) < processors,
             near: AtomicU32::new(f32::NAN.to_bits()),
             target: RwLock::new(None),
         };
@@ -91,7 +88,7 @@ impl CullingThreadpool {
 
     /// Waits until everything that was submitted before is drawn.
     pub fn flush(&self) {
-        self.crew.flush(self.helps);
+        self.crew.flush();
     }
 
     /// Draws into this object from now on, which the pool owns until [`Self::take_buffer`]. One that it had is dropped, after
@@ -239,14 +236,16 @@ impl CullingThreadpool {
     /// [`MaskedOcclusionCulling::merge_buffers`].
     ///
     /// # Safety
-    /// The others stay where they are, and nobody changes them, until the pool was flushed; none is the pool's own.
+    /// The others stay where they are, and nobody changes them, until the pool was flushed.
     ///
     /// # Errors
     /// As there.
     pub unsafe fn merge_buffers(&self, others: &[&MaskedOcclusionCulling]) -> Result<(), Error> {
         self.with_buffer(|target| {
             target.moc().mergeable(others)?;
-            let others = others.iter().map(|&other| Shared(NonNull::from(other))).collect();
+            let others = others.iter().map(|&other| NonNull::from(other));
+            // With itself changes nothing.
+            let others = others.filter(|&other| other != target.pointer()).map(Shared).collect();
             self.crew.submit_ready(|| Work::Merge(others));
             Ok(())
         })

@@ -213,3 +213,69 @@ impl<C, W: Clone> Schedule<C, W> {
         (self.open, self.ready) = (self.open.max(self.first), self.ready.max(self.first));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Plays random turns of submitters and threads; what a bin draws is compared with the order of submission.
+    fn play(seed: u64) {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let (bins, max, threads) = (random.usize(1..6), random.usize(1..5), random.usize(1..5));
+        let mut schedule: Schedule<u32, Vec<u32>> = Schedule::new(bins, max);
+        let mut drawn: Vec<Vec<u32>> = vec![Vec::new(); bins];
+        let mut submitted = Vec::new();
+        let mut done = Vec::new();
+        let mut tasks: Vec<Task<u32, Vec<u32>>> = Vec::new();
+        let calls = random.u32(0..200);
+        while (submitted.len() as u32) < calls || !schedule.is_done() {
+            let id = submitted.len() as u32;
+            let submits = id < calls && (random.bool() || schedule.is_done());
+            if submits && random.u8(0..8) == 0 {
+                if !schedule.is_full() {
+                    schedule.submit_ready(vec![id]);
+                    submitted.push(id);
+                }
+            } else if submits && schedule.submit(id, random.usize(0..2 * BATCH_WEIGHT)).is_ok() {
+                submitted.push(id);
+            }
+            assert!(schedule.in_flight().end - schedule.in_flight().start <= max as u64);
+            let has_work = schedule.has_work();
+            if tasks.len() < threads && random.bool() {
+                let task = schedule.claim(random.usize(0..bins + 1));
+                assert_eq!(task.is_some(), has_work);
+                tasks.extend(task);
+            } else if !tasks.is_empty() {
+                match tasks.swap_remove(random.usize(0..tasks.len())) {
+                    Task::Keep { batch, calls } => schedule.kept(batch, calls),
+                    Task::Draw { bin, work } => {
+                        drawn[bin].extend(work.iter().flatten());
+                        schedule.drawn(bin, work.len(), |work| done.extend(work));
+                    }
+                }
+            }
+            // Nothing is left undone for want of somebody to wake: without tasks there is work, or all is done.
+            assert!(!tasks.is_empty() || schedule.has_work() || schedule.is_done());
+        }
+        assert!(drawn.iter().all(|drawn| *drawn == submitted), "seed {seed}");
+        assert_eq!(done, submitted);
+    }
+
+    #[test]
+    fn every_bin_draws_everything_in_the_order_of_submission() {
+        (0..20_000).for_each(play);
+    }
+
+    #[test]
+    fn small_calls_share_a_batch_and_a_thread_is_woken_once() {
+        let mut schedule: Schedule<u32, Vec<u32>> = Schedule::new(1, 4);
+        let mut woken = 0;
+        let fit = BATCH_WEIGHT / (12 + CALL_WEIGHT);
+        for id in 0..fit as u32 {
+            woken += u32::from(schedule.submit(id, 12).unwrap());
+        }
+        assert_eq!((schedule.in_flight(), woken), (0..1, 1));
+        assert!(schedule.submit(0, 12).unwrap());
+        assert_eq!(schedule.in_flight(), 0..2);
+    }
+}
