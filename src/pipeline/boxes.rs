@@ -20,8 +20,6 @@ pub(super) struct Look {
     pub clip: TileRect,
     /// Their areas are kept up to date.
     pub areas: bool,
-    /// Other threads may be drawing there. What is read then may be old, which is safe: between clears, least depths only rise.
-    pub racing: bool,
 }
 
 /// The boxes of a vector of triangles: of a draw the pixels whose centre is inside, of a query those that are touched.
@@ -76,10 +74,18 @@ impl<S: Simd> Boxes<S> {
     /// would tell, and it leaves them out.
     ///
     /// # Safety
-    /// Nobody else writes to the tiles and areas of the rectangle, unless `racing`.
+    /// Nobody else writes to the tiles and areas of the rectangle, unless `RACING`: then others may draw there, by stores of whole words. What
+    /// is read may be old, which is safe: between clears, least depths only rise.
     #[inline(always)]
-    pub unsafe fn hidden(&self, s: S, buffer: &Buffer, look: Look, purpose: Purpose, nearest: S::F) -> S::M {
-        let Look { clip, areas: with_areas, racing } = look;
+    pub unsafe fn hidden<const RACING: bool>(
+        &self,
+        s: S,
+        buffer: &Buffer,
+        look: Look,
+        purpose: Purpose,
+        nearest: S::F,
+    ) -> S::M {
+        let Look { clip, areas: with_areas } = look;
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
         if clip != buffer.all_tiles() {
@@ -108,7 +114,7 @@ impl<S: Simd> Boxes<S> {
         // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile.
         let at = |row: S::I, x: S::I| unsafe {
             let index = s.select_i(few, s.add_i(row, x), any);
-            if racing { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
+            if RACING { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
         };
         let least = s.min(s.min(at(top, left), at(top, right)), s.min(at(bottom, left), at(bottom, right)));
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };

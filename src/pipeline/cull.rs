@@ -42,7 +42,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
-    let look = Look { clip: buffer.all_tiles(), areas: L::PURPOSE == Purpose::Draw, racing: false };
+    let look = Look { clip: buffer.all_tiles(), areas: L::PURPOSE == Purpose::Draw };
     let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: facing.both, look };
     let triangles = mesh.triangles.len() / 3;
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };

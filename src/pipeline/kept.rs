@@ -113,9 +113,8 @@ impl LastStep for Keep<'_> {
         if self.sift {
             let boxes = Boxes::new(s, buffer, Purpose::Draw, corners);
             let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
-            let look = Look { racing: true, ..setup.look };
             // SAFETY: whoever draws meanwhile stores least depths as words, in which old ones are safe.
-            let hidden = unsafe { boxes.hidden(s, buffer, look, Purpose::Draw, nearest) };
+            let hidden = unsafe { boxes.hidden::<true>(s, buffer, setup.look, Purpose::Draw, nearest) };
             open = s.and_not_m(hidden, s.and_m(active, boxes.inside));
         }
         let bits = s.mask_bits(open);
@@ -165,7 +164,7 @@ pub(super) fn draw<'k, S: Simd, L: LastStep>(
     let mut survivors = Survivors::uninit();
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
-    let look = Look { clip, areas: true, racing: false };
+    let look = Look { clip, areas: true };
     let mut setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, look };
     let mut tally = Tally::default();
     for block in kept.flat_map(|kept| &kept.blocks[..kept.used]) {

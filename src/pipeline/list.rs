@@ -24,7 +24,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(
     let survivors = Survivors::of(&mut survivors);
     let mut batch = Batch::uninit();
     // The corners were put in order when the list was filled.
-    let look = Look { clip, areas: false, racing: false };
+    let look = Look { clip, areas: false };
     let setup = Setup { s, purpose: L::PURPOSE, buffer, both_sides: false, look };
     let mut tally = Tally { processed: list.len() as u64, ..Tally::default() };
     let mut position = 0;

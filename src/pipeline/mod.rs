@@ -170,29 +170,38 @@ pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Opti
     (!indices.is_empty()).then(|| simd::run(implementation, chunk::IndexRange(indices)).1)
 }
 
-macro_rules! mesh_job {
-    ($job:ident, $last_step:expr) => {
-        struct $job<'a> {
-            buffer: &'a Buffer,
-            camera: &'a Camera,
-            mesh: &'a Mesh<'a>,
-        }
-
-        impl Job for $job<'_> {
-            type Output = (CullingResult, Tally);
-
-            #[inline(always)]
-            fn run<S: Simd>(self, s: S) -> Self::Output {
-                let mut last = $last_step(s, self.buffer);
-                cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
-            }
-        }
-    };
+struct DrawMesh<'a> {
+    buffer: &'a Buffer,
+    camera: &'a Camera,
+    mesh: &'a Mesh<'a>,
 }
 
-// SAFETY: the caller of `draw` vouches for the buffer.
-mesh_job!(DrawMesh, |s, buffer| unsafe { Draw::new(s, buffer) });
-mesh_job!(TestMesh, Query::new);
+impl Job for DrawMesh<'_> {
+    type Output = (CullingResult, Tally);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Self::Output {
+        // SAFETY: the caller of `draw` vouches for the buffer.
+        let mut last = unsafe { Draw::new(s, self.buffer) };
+        cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
+    }
+}
+
+struct TestMesh<'a> {
+    buffer: &'a Buffer,
+    camera: &'a Camera,
+    mesh: &'a Mesh<'a>,
+}
+
+impl Job for TestMesh<'_> {
+    type Output = (CullingResult, Tally);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Self::Output {
+        let mut last = Query::new(s, self.buffer);
+        cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
+    }
+}
 
 struct BinMesh<'a, 'b, 'c> {
     buffer: &'a Buffer,

@@ -81,7 +81,7 @@ pub(super) fn set_up<S: Simd>(
     let mut hidden = 0;
     if purpose != Purpose::Bin {
         // SAFETY: the pipeline's caller vouches for the buffer.
-        hidden = s.mask_bits(unsafe { boxes.hidden(s, buffer, look, purpose, nearest) });
+        hidden = s.mask_bits(unsafe { boxes.hidden::<false>(s, buffer, look, purpose, nearest) });
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();
