@@ -8,6 +8,9 @@ use super::sync::{Arc, Condvar, Mutex, MutexGuard};
 use super::target::{Call, Target, Work};
 use crate::pipeline::Kept;
 
+/// The number of those who are not the pool's.
+const HELPER: usize = usize::MAX;
+
 /// What threads share.
 pub(super) struct Crew {
     state: Mutex<State>,
@@ -44,12 +47,11 @@ impl Crew {
 
     /// The way of a thread of the pool, until [`Self::stop`].
     pub fn work(&self, number: usize) {
-        let mut bin = number;
         let mut state = self.lock();
         while !state.stopped {
-            let task = if state.suspended { None } else { state.schedule.claim(bin) };
+            let task = if state.suspended { None } else { state.schedule.claim(number) };
             state = match task {
-                Some(task) => self.perform(state, task, &mut bin),
+                Some(task) => self.perform(state, task),
                 None => {
                     state.idle += 1;
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -65,7 +67,6 @@ impl Crew {
         &'a self,
         mut state: MutexGuard<'a, State>,
         task: Task<Call, Arc<Work>>,
-        last_bin: &mut usize,
     ) -> MutexGuard<'a, State> {
         if state.idle > 0 && !state.suspended && state.schedule.has_work() {
             // Each wakes the next, so that submitting wakes one at most.
@@ -91,7 +92,6 @@ impl Crew {
                 state.schedule.kept(batch, Arc::new(Work::Triangles(kept)));
             }
             Task::Draw { bin, work } => {
-                *last_bin = bin;
                 drop(state);
                 let draw = || {
                     if let Some(target) = &target {
@@ -119,8 +119,8 @@ impl Crew {
 
     /// Does a task, or waits until somebody did one.
     fn help<'a>(&'a self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
-        if let Some(task) = state.schedule.claim(0) {
-            return self.perform(state, task, &mut 0);
+        if let Some(task) = state.schedule.claim(HELPER) {
+            return self.perform(state, task);
         }
         state.waiting += 1;
         let mut state = self.progress.wait(state).unwrap_or_else(PoisonError::into_inner);

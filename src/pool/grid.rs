@@ -1,7 +1,7 @@
 //! Cuts a buffer into bins: rectangles of whole areas (128x64 pixels), so that each bin keeps its areas up to date by itself and
 //! no two bins share a block.
 
-use crate::buffer::{TILE_HEIGHT, TILE_WIDTH, TileRect};
+use crate::buffer::TileRect;
 use crate::buffer::areas::{AREA_TILES_H, AREA_TILES_W};
 use crate::pipeline::Cuts;
 
@@ -14,14 +14,14 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// As equal as areas allow; not more bins than `most` or than areas.
+    /// As equal as areas allow; as many as `bins_w * bins_h`, but not more than `most` or than areas.
+    ///
+    /// Rows first: the least depths of a row of tiles lie side by side, and threads that draw left and right of each other
+    /// would write to the same cache lines.
     pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32, most: u32) -> Self {
-        let (mut bins_w, mut bins_h) = (bins_w.clamp(1, tiles.x1), bins_h.clamp(1, tiles.y1));
-        while bins_w * bins_h > most.max(1) {
-            // The longer side of what is left stays cut.
-            let wide = bins_w > 1 && (bins_h == 1 || tiles.x1 * TILE_WIDTH * bins_h < tiles.y1 * TILE_HEIGHT * bins_w);
-            if wide { bins_w -= 1 } else { bins_h -= 1 }
-        }
+        let bins = bins_w.max(1).saturating_mul(bins_h.max(1)).min(most.max(1));
+        let rows = tiles.y1.div_ceil(AREA_TILES_H);
+        let (bins_w, bins_h) = (bins / bins.min(rows), bins.min(rows));
         let cut = |tiles: u32, bins: u32, area: u32| -> Vec<u32> {
             let areas = tiles.div_ceil(area);
             let bins = bins.clamp(1, areas);

@@ -48,6 +48,8 @@ struct Bin {
     next: u64,
     /// Somebody draws in it.
     busy: bool,
+    /// Who did so last.
+    thread: usize,
 }
 
 /// The batches in flight.
@@ -84,7 +86,7 @@ impl<C, W: Clone> Schedule<C, W> {
     /// If something is in flight.
     pub fn set_bins(&mut self, bins: usize) {
         assert!(self.is_done());
-        self.bins = vec![Bin { next: self.first, busy: false }; bins];
+        self.bins = (0..bins).map(|thread| Bin { next: self.first, busy: false, thread }).collect();
     }
 
     /// Takes a call in, or gives it back where there is no room. `weight`: its triangles. True: there is something worth
@@ -135,12 +137,12 @@ impl<C, W: Clone> Schedule<C, W> {
         self.ready = ready;
     }
 
-    /// Something to do, if there is. `bin`: the one to draw in by preference, which is in this thread's cache.
-    pub fn claim(&mut self, bin: usize) -> Option<Task<C, W>> {
+    /// Something to do for a thread, if there is.
+    pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
         let behind = self.bins.iter().map(|bin| bin.next).min().map_or(0, |next| self.ready.saturating_sub(next));
         // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
         let ahead = if behind < LEAD { self.claim_batch(WORTHWHILE) } else { None };
-        ahead.or_else(|| self.claim_bin(bin)).or_else(|| self.claim_batch(0))
+        ahead.or_else(|| self.claim_bin(thread)).or_else(|| self.claim_batch(0))
     }
 
     /// The first batch that nobody keeps, unless it is the last one and weighs less.
@@ -163,13 +165,13 @@ impl<C, W: Clone> Schedule<C, W> {
         None
     }
 
-    /// A bin that is behind: the preferred one, or else the one that is most.
-    fn claim_bin(&mut self, preferred: usize) -> Option<Task<C, W>> {
+    /// A bin that is behind: of those that this thread drew in last, whose tiles are in its cache, or else of all, the one that is
+    /// most.
+    fn claim_bin(&mut self, thread: usize) -> Option<Task<C, W>> {
         let free = |bin: &Bin| !bin.busy && bin.next < self.ready;
-        let bin = match self.bins.get(preferred) {
-            Some(bin) if free(bin) => preferred,
-            _ => (0..self.bins.len()).filter(|&k| free(&self.bins[k])).min_by_key(|&k| self.bins[k].next)?,
-        };
+        let order = |&k: &usize| (self.bins[k].thread != thread, self.bins[k].next);
+        let bin = (0..self.bins.len()).filter(|&k| free(&self.bins[k])).min_by_key(order)?;
+        self.bins[bin].thread = thread;
         let next = self.bins[bin].next;
         let from = (next - self.first) as usize;
         let to = ((self.ready - self.first) as usize).min(from + AT_ONCE);
@@ -203,7 +205,8 @@ impl<C, W: Clone> Schedule<C, W> {
         for batch in self.batches.range_mut(from..from + count) {
             batch.bins_left -= 1;
         }
-        self.bins[bin] = Bin { next: self.bins[bin].next + count as u64, busy: false };
+        let bin = &mut self.bins[bin];
+        (bin.next, bin.busy) = (bin.next + count as u64, false);
         while self.batches.front().is_some_and(|batch| batch.bins_left == 0) {
             if let Some(Batch { stage: Stage::Ready(work), .. }) = self.batches.pop_front() {
                 done(work);
