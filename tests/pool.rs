@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::Mat4;
 use masked_occlusion_culling::{
-    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings, UpdateRule,
-    VertexLayout, Vertices,
+    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings,
+    UpdateRule, VertexLayout, Vertices,
 };
 use scenes::{Numbers, Scene};
 
@@ -104,7 +104,8 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         direct.clear_buffer().unwrap();
                     }
                     2 => {
-                        let (width, height) = [(200, 130), (640, 400), (33, 9), (257, 300)][numbers.next() as usize % 4];
+                        let (width, height) =
+                            [(200, 130), (640, 400), (33, 9), (257, 300)][numbers.next() as usize % 4];
                         pool.set_resolution(width, height).unwrap();
                         direct.set_resolution(width, height).unwrap();
                     }
@@ -126,8 +127,10 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         let turned = Mat4::from_scale(glam::Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
                         let options = DrawOptions {
                             // z of the mesh is 0, and its w comes as z.
-                            model_to_clip: (numbers.next() % 2 == 0)
-                                .then(|| Mat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.]) * turned),
+                            model_to_clip: (numbers.next() % 2 == 0).then(|| {
+                                Mat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.])
+                                    * turned
+                            }),
                             winding: BackfaceWinding::None,
                             ..DrawOptions::default()
                         };
@@ -159,8 +162,10 @@ const TWO: [u32; 6] = [0, 1, 2, 0, 2, 3];
 fn draw_wall(pool: &CullingThreadpool) {
     let vertices = Vertices::new(&WALL, VertexLayout::CLIP_SPACE).unwrap();
     // SAFETY: a constant.
-    unsafe { pool.render_triangles(vertices, &TWO, &DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() }) }
-        .unwrap();
+    unsafe {
+        pool.render_triangles(vertices, &TWO, &DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() })
+    }
+    .unwrap();
 }
 
 #[test]

@@ -63,9 +63,7 @@ impl Kept {
     /// A block with room for a vector.
     #[inline(always)]
     fn open(&mut self, both_sides: bool, pieces: usize, lanes: usize) -> &mut Block {
-        let fits = |block: &Block| {
-            block.both_sides == both_sides && (block.vectors + 1) * lanes <= ROOM
-        };
+        let fits = |block: &Block| block.both_sides == both_sides && (block.vectors + 1) * lanes <= ROOM;
         if self.used == 0 || !fits(&self.blocks[self.used - 1]) {
             self.next_block(both_sides, pieces);
         }

@@ -25,8 +25,10 @@ struct State {
     target: Option<Arc<Target>>,
     /// Memory to be used again.
     spare: Vec<Kept>,
-    /// Threads that wait for work, and threads that wait for progress.
+    /// Threads that wait for work, and how many of them were woken and are not awake yet.
     idle: usize,
+    woken: usize,
+    /// Threads that wait for progress.
     waiting: usize,
     suspended: bool,
     stopped: bool,
@@ -35,8 +37,16 @@ struct State {
 impl Crew {
     pub fn new(max_batches: usize) -> Self {
         let schedule = Schedule::new(1, max_batches);
-        let state =
-            State { schedule, target: None, spare: Vec::new(), idle: 0, waiting: 0, suspended: true, stopped: false };
+        let state = State {
+            schedule,
+            target: None,
+            spare: Vec::new(),
+            idle: 0,
+            woken: 0,
+            waiting: 0,
+            suspended: true,
+            stopped: false,
+        };
         Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new() }
     }
 
@@ -56,22 +66,26 @@ impl Crew {
                     state.idle += 1;
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
                     state.idle -= 1;
+                    state.woken = state.woken.saturating_sub(1);
                     state
                 }
             };
         }
     }
 
-    /// Does a task, outside of the lock.
-    fn perform<'a>(
-        &'a self,
-        mut state: MutexGuard<'a, State>,
-        task: Task<Call, Arc<Work>>,
-    ) -> MutexGuard<'a, State> {
-        if state.idle > 0 && !state.suspended && state.schedule.has_work() {
-            // Each wakes the next, so that submitting wakes one at most.
+    /// Wakes a thread if there is work and one that sleeps. Not twice: waking takes a system call, and the thread tens of
+    /// microseconds, in which others do what it was woken for.
+    fn wake(&self, state: &mut State) {
+        if state.idle > state.woken && !state.suspended && state.schedule.has_work() {
+            state.woken += 1;
             self.work.notify_one();
         }
+    }
+
+    /// Does a task, outside of the lock.
+    fn perform<'a>(&'a self, mut state: MutexGuard<'a, State>, task: Task<Call, Arc<Work>>) -> MutexGuard<'a, State> {
+        // Each wakes the next, so that submitting wakes one at most.
+        self.wake(&mut state);
         let target = state.target.clone();
         // A panic would be a bug of ours; then occluders are missing, which is safe, and nobody waits in vain.
         match task {
@@ -137,8 +151,8 @@ impl Crew {
             call.clears = state.target.as_ref().map_or(0, |target| target.clears());
             match state.schedule.submit(call, weight) {
                 Ok(worthwhile) => {
-                    if worthwhile && state.idle > 0 && !state.suspended {
-                        self.work.notify_one();
+                    if worthwhile {
+                        self.wake(&mut state);
                     }
                     return;
                 }
@@ -161,9 +175,7 @@ impl Crew {
     /// Works until everything that is in flight is drawn.
     pub fn flush(&self) {
         let mut state = self.lock();
-        if !state.suspended && state.idle > 0 && state.schedule.has_work() {
-            self.work.notify_all();
-        }
+        self.wake(&mut state);
         let end = state.schedule.in_flight().end;
         while state.schedule.in_flight().start < end {
             state = self.help(state);

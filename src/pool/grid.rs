@@ -68,7 +68,7 @@ mod tests {
                 [(1, 1, 9), (4, 4, 16), (4, 4, 8), (3, 7, 1), (u32::MAX, u32::MAX, 100), (0, 0, 4)]
             {
                 let grid = Grid::new(TileRect { x0: 0, y0: 0, x1: w, y1: h }, bins_w, bins_h, most);
-                    assert!(grid.len() as u32 <= most);
+                assert!(grid.len() as u32 <= most);
                 let mut seen = vec![0; (w * h) as usize];
                 for bin in 0..grid.len() {
                     let t = grid.tiles(bin);

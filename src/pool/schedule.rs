@@ -16,9 +16,9 @@ pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch that weighs so much is worth a thread's while.
 pub(super) const WORTHWHILE: usize = 512;
 /// So many batches may be ready that some bin did not draw, before drawing goes first.
-const LEAD: u64 = 4;
+const LEAD: u64 = 8;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 16;
 
 /// What a thread is to do.
 pub(super) enum Task<C, W> {

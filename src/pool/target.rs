@@ -137,7 +137,9 @@ impl Target {
                 n => unsafe { core::slice::from_raw_parts(call.triangles, n) },
             };
             // SAFETY: the caller's contract.
-            let done = unsafe { self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept) };
+            let done = unsafe {
+                self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept)
+            };
             debug_assert_eq!(done, Ok(()), "a target has a buffer");
         }
     }
