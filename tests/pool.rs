@@ -127,7 +127,7 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         let turned = Mat4::from_scale(glam::Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
                         let options = DrawOptions {
                             // z of the mesh is 0, and its w comes as z.
-                            model_to_clip: (numbers.next() % 2 == 0).then(|| {
+                            model_to_clip: numbers.next().is_multiple_of(2).then(|| {
                                 Mat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.])
                                     * turned
                             }),

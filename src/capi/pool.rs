@@ -102,8 +102,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { handle(pool) }?.pool.wake_threads()))
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool) }?.pool.wake_threads();
+        Ok(())
+    })
 }
 
 /// Lets each thread sleep as soon as it has finished what it is at. Calls are taken in meanwhile, and whoever flushes
@@ -115,8 +118,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
 /// As MOC_ThreadpoolWakeThreads.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpool) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { handle(pool) }?.pool.suspend_threads()))
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool) }?.pool.suspend_threads();
+        Ok(())
+    })
 }
 
 /// Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
@@ -128,8 +134,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
 /// As MOC_ThreadpoolWakeThreads.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { handle(pool) }?.pool.flush()))
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool) }?.pool.flush();
+        Ok(())
+    })
 }
 
 /// Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. A near plane that was set on the pool
@@ -146,8 +155,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,
     moc: *mut MaskedOcclusionCulling,
 ) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) }))
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) };
+        Ok(())
+    })
 }
 
 /// MOC_SetResolution of the pool's object, after what was submitted is drawn.

@@ -36,8 +36,7 @@ impl Survivors {
 
     /// None yet, on the heap, all of it zeros.
     pub fn boxed() -> Box<Self> {
-        // SAFETY: zeros are a length and floats.
-        unsafe { Box::<Self>::new_zeroed().assume_init() }
+        Box::new(Self { lanes: [[MaybeUninit::new(0.0); ROOM + MAX_LANES]; 9], len: 0 })
     }
 
     pub fn clear(&mut self) {

@@ -1,0 +1,49 @@
+//! A frame drawn by the pool of threads, beside the same frame drawn directly: clear, draw, flush.
+
+mod common;
+
+use common::{Order, views};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use masked_occlusion_culling::{CullingThreadpool, UpdateRule, Vertices};
+
+fn pool(c: &mut Criterion) {
+    let mut group = c.benchmark_group("pool");
+    let processors = std::thread::available_parallelism().map_or(1, |n| n.get() as u32);
+    let mut counts = vec![0, 1, 2, processors - 1, processors];
+    counts.sort_unstable();
+    counts.dedup();
+    for view in views(Order::Near) {
+        let vertices = Vertices::from_positions(&view.positions);
+        group.throughput(Throughput::Elements(view.triangles()));
+        let mut moc = common::object(UpdateRule::ThreeLayer);
+        moc.set_near_clip_plane(view.near).expect("a number");
+        group.bench_function(BenchmarkId::new("direct", view.name), |b| {
+            b.iter(|| {
+                moc.clear_buffer().expect("there is a buffer");
+                for object in &view.objects {
+                    moc.render_triangles(vertices, object, &view.options).expect("indices are right");
+                }
+            });
+        });
+        for &threads in &counts {
+            let pool = CullingThreadpool::new(threads, 4, 4, 32).expect("threads can be started");
+            let mut moc = common::object(UpdateRule::ThreeLayer);
+            moc.set_near_clip_plane(view.near).expect("a number");
+            pool.set_buffer(moc);
+            pool.wake_threads();
+            group.bench_function(BenchmarkId::new(format!("{threads} threads"), view.name), |b| {
+                b.iter(|| {
+                    pool.scope(|scope| {
+                        pool.clear_buffer().expect("there is a buffer");
+                        for object in &view.objects {
+                            scope.render_triangles(vertices, object, &view.options).expect("indices are right");
+                        }
+                    });
+                });
+            });
+        }
+    }
+}
+
+criterion_group!(benches, pool);
+criterion_main!(benches);
