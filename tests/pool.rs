@@ -155,6 +155,20 @@ fn thousands_of_frames_have_the_bits_of_one_thread() {
     }
 }
 
+/// As long as POOL_SOAK_SECONDS says, from the seed in POOL_SOAK_SEED on; not at all without them.
+#[test]
+fn a_soak_as_long_as_wanted() {
+    let number = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let Some(seconds) = number("POOL_SOAK_SECONDS") else { return };
+    let first = number("POOL_SOAK_SEED").unwrap_or(1) << 16;
+    let start = std::time::Instant::now();
+    let rounds = (first..).take_while(|_| start.elapsed().as_secs() < seconds);
+    for seed in rounds {
+        let mut numbers = Numbers(seed);
+        soak(seed, (numbers.next() % 9) as u32, [1, 2, 5, 32][numbers.next() as usize % 4], 100);
+    }
+}
+
 /// A wall over the whole screen.
 const WALL: [f32; 16] = [-9., -9., 0., 4., 9., -9., 0., 4., 9., 9., 0., 4., -9., 9., 0., 4.];
 const TWO: [u32; 6] = [0, 1, 2, 0, 2, 3];

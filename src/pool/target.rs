@@ -7,6 +7,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use super::grid::Grid;
 use crate::buffer::TileRect;
 use crate::pipeline::Kept;
+use crate::simd::MAX_LANES;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling};
 
@@ -182,7 +183,8 @@ impl Target {
         }
     }
 
-    /// Asks while nobody draws in the bins that hold a tile of a rectangle. What was drawn before a clear that was submitted, but
+    /// Asks while nobody draws in the bins that hold a tile of a rectangle, or a least depth that lies in a vector with one of its
+    /// tiles'. What was drawn before a clear that was submitted, but
     /// not done yet, hides nothing.
     pub fn query(
         &self,
@@ -191,8 +193,12 @@ impl Target {
     ) -> Result<CullingResult, Error> {
         let clears = self.clears.load(Ordering::Acquire);
         let read = |bin: usize| self.bins[bin].piece.read().unwrap_or_else(PoisonError::into_inner);
+        // Vectors go on with the next rows of tiles.
+        let ahead = (MAX_LANES as u32).div_ceil(self.tiles.x1);
+        let y1 = (tiles.y1 + ahead).min(self.tiles.y1);
+        let looked_at = TileRect { x0: 0, x1: self.tiles.x1, y0: tiles.y0, y1 };
         // Most rectangles lie in one bin, for which no list is allocated.
-        let mut bins = self.grid.touched(tiles);
+        let mut bins = self.grid.touched(looked_at);
         let first: Option<RwLockReadGuard<'_, Piece>> = bins.next().map(read);
         let rest: Vec<RwLockReadGuard<'_, Piece>> = bins.map(read).collect();
         let stale = self.grid.touched(tiles).any(|bin| self.bins[bin].clears.load(Ordering::Acquire) < clears);
