@@ -87,8 +87,13 @@ static void merge(int32_t rule)
     HAS_NONE(MOC_MergeBuffers(all, others, 2));
     HAS_NONE(MOC_MergeBuffers(bare, others, 1));
     HAS_NONE(MOC_ThreadpoolMergeBuffers(pool, others, 2));
+    /* With itself changes nothing. */
+    others[0] = all;
     others[1] = all;
-    CHECK_EQ(MOC_MergeBuffers(all, others, 2), MOC_STATUS_INVALID_ENUM);
+    OK(MOC_MergeBuffers(all, others, 2));
+    others[0] = pooled;
+    others[1] = pooled;
+    OK(MOC_ThreadpoolMergeBuffers(pool, others, 2));
     OK(MOC_ThreadpoolFlush(pool));
     same(one, all);
     same(one, pooled);

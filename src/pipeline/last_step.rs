@@ -119,7 +119,11 @@ impl<T: Simd> LastStep for Draw<'_, T> {
     #[inline(always)]
     fn take(&mut self, batch: &Batch, alive: &Alive, tally: &mut Tally) -> bool {
         if self.buffer.statistics() {
-            tally.rasterized += begun_in(batch, alive.rasterized, self.clip);
+            // Of the pieces of a screen each has what was kept, and a triangle counts once; of lists, what is in them.
+            tally.rasterized += match self.drawn {
+                Some(_) => begun_in(batch, alive.rasterized, self.clip),
+                None => u64::from(alive.rasterized.count_ones()),
+            };
             tally.traversed += tiles_in(batch, alive.rasterized, self.clip);
             let (updated, merged) = self.update::<true>(batch, alive);
             (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);
