@@ -15,11 +15,11 @@
  *
  * Calls take effect in their order, and the buffer gets the same bits as from one thread, whatever the number of
  * threads and bins. RenderTriangles returns at once: its arrays have to stay as they are until Flush; matrices are
- * copied. The object that the pool draws into may be used directly after a Flush, while nobody submits.
+ * copied. The object that the pool draws into may be used directly after a Flush, while nobody calls the pool.
  *
  * The threads sleep when there is nothing to do, between SuspendThreads and WakeThreads, and before the first
  * WakeThreads. Whoever flushes a pool whose threads are suspended does their work. A pool may be destroyed at any
- * time: it draws what was submitted first, and ends its threads.
+ * time: it draws what was submitted first, for which arrays and object still have to be there, and ends its threads.
  *
  * Several threads may call everything at once but the destructor; matrix and vertex layout are the pool's, so that
  * threads that want different ones take turns. TestRect and TestTriangles answer from what is drawn by now: what was
@@ -40,8 +40,8 @@ public:
     typedef MaskedOcclusionCulling::VertexLayout VertexLayout;
 
     /**
-     * numThreads: threads besides those that call; 0 is allowed. binsW by binsH: the pieces into which the screen is
-     * cut, several for each thread; they are not smaller than 128x64 pixels, so that there may be fewer. maxJobs: batches
+     * numThreads: threads besides those that call; 0 is allowed. binsW times binsH: the pieces into which the screen is
+     * cut; there are no more than four a thread, and none is smaller than 128x64 pixels. maxJobs: batches
      * of calls that may be in flight; a caller who finds no room works until there is.
      *
      * Where the system starts no more threads, the pool has none, and Flush does the work.

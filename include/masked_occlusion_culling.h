@@ -925,14 +925,14 @@ MOC_Status MOC_TransformVertices(const float *matrix,
  * Makes a pool of `threads` threads and writes it to `out` (null there on errors). The threads sleep until
  * MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
  *
- * Calls that draw return at once. The threads draw in `bins_w` by `bins_h` pieces of the screen (several for each
- * thread are good; they are not smaller than 128x64 pixels, so that there may be fewer), in each in the order in
- * which the calls came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
+ * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
+ * thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
+ * came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
  * in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
  *
  * Several threads may submit and query at once.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0,
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` above 1024,
  * MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
  *
  * # Safety
@@ -977,7 +977,7 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 
 /**
  * Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
- * and, while nobody submits, the object may be used directly.
+ * and, while nobody calls the pool, the object may be used directly.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -995,7 +995,7 @@ MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
  * # Safety
  * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
  * the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
- * submits.
+ * calls the pool.
  */
 MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
                                    MaskedOcclusionCulling *moc);
@@ -1052,8 +1052,8 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
 
 /**
- * Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once; see
- * MOC_RenderTriangles.
+ * Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once, or
+ * works where `max_jobs` batches are in flight; see MOC_RenderTriangles.
  *
  * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
  *

@@ -109,7 +109,8 @@ impl<R: Rule> Job for Walk<'_, R> {
         for y in top..=bottom {
             // Lanes that are not behind their whole tile.
             let open_from = |x: u32| {
-                // SAFETY: after the last tile there is room for a vector of least depths; nobody draws.
+                // SAFETY: after the last tile there is room for a vector of least depths; nobody draws there, which a pool sees
+                // to by its locks.
                 let least = unsafe { s.load_f(buffer.least_of(x, y)) };
                 s.le(least, depth)
             };

@@ -3,7 +3,7 @@
 //! A triangle that is too large for its tiles to be looked up one by one, and that is hidden, is found so before its edges
 //! are set up. Between two clears a tile's least depth only rises, so that an area may lag behind its tiles: it then lets
 //! a hidden triangle through, no more. Areas are therefore brought up to date only after so many tiles were drawn into,
-//! and only by whoever has the whole buffer to itself.
+//! and only by whoever draws there alone.
 
 use super::{Buffer, TileRect, UNTOUCHED};
 use crate::simd::{MAX_LANES, Simd, store_relaxed};
@@ -58,7 +58,7 @@ pub(crate) unsafe fn drawn<S: Simd>(s: S, buffer: &Buffer, clip: TileRect, tiles
 /// Brings the areas of a rectangle of tiles up to date, which begins with an area and ends with one or at the buffer's end.
 ///
 /// # Safety
-/// Nobody else uses its tiles and areas.
+/// Nobody else writes its tiles and areas; others may read least depths as words.
 #[inline(always)]
 unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
     debug_assert!(clip.x0.is_multiple_of(AREA_TILES_W) && clip.y0.is_multiple_of(AREA_TILES_H));

@@ -148,7 +148,7 @@ impl Buffer {
     /// Clears a rectangle of tiles that begins with an area and ends with one or at the buffer's end.
     ///
     /// # Safety
-    /// Nobody else uses its tiles and areas.
+    /// Nobody else writes its tiles and areas; others may read least depths as words.
     pub unsafe fn clear_tiles(&self, clip: TileRect) {
         // Blocks are whole: the lower tiles of the last may lie below the screen.
         for y in clip.y0..clip.y1.next_multiple_of(2) {

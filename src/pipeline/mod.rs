@@ -154,7 +154,7 @@ pub(crate) unsafe fn keep(
 /// one or at the buffer's end, and its number among the cuts that it was kept for. `drawn` counts for the rectangle when its areas are due.
 ///
 /// # Safety
-/// Nobody else uses the rectangle's tiles and areas.
+/// Nobody else writes the rectangle's tiles and areas; others may read least depths as words.
 pub(crate) unsafe fn draw_kept<'a>(
     implementation: Implementation,
     buffer: &Buffer,

@@ -87,7 +87,6 @@ impl Crew {
         // Each wakes the next, so that submitting wakes one at most.
         self.wake(&mut state);
         let target = state.target.clone();
-        // A panic would be a bug of ours; then occluders are missing, which is safe, and nobody waits in vain.
         match task {
             Task::Keep { batch, calls } => {
                 let mut kept = state.spare.pop().unwrap_or_default();
@@ -98,6 +97,7 @@ impl Crew {
                         unsafe { target.keep(&calls, &mut kept) };
                     }
                 };
+                // A panic would be a bug of ours; then occluders are missing, which is safe, and nobody waits in vain.
                 if catch_unwind(AssertUnwindSafe(keep)).is_err() {
                     kept.clear();
                 }
@@ -107,13 +107,9 @@ impl Crew {
             }
             Task::Draw { bin, work } => {
                 drop(state);
-                let draw = || {
-                    if let Some(target) = &target {
-                        target.draw(bin, &work);
-                    }
-                };
-                // What it was is told by the panic's own message.
-                let _ = catch_unwind(AssertUnwindSafe(draw));
+                if let Some(target) = &target {
+                    target.draw(bin, &work);
+                }
                 let count = work.len();
                 drop((work, target));
                 state = self.lock();

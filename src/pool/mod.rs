@@ -30,6 +30,8 @@ use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices}
 use crew::Crew;
 use target::{Bins, Call, Shared, Target, Work};
 
+/// A larger number is a mistake.
+const MAX_THREADS: u32 = 1024;
 /// More bins bring threads no more to do: triangles that reach several are set up for each.
 const BINS_A_THREAD: u32 = 4;
 /// Larger calls are cut, so that several threads can project them.
@@ -49,15 +51,15 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. Bins are `bins_w` by `bins_h` pieces of the screen;
-    /// several for each thread are good. Bins are not smaller than 128 by 64 pixels: where the screen holds no more of those,
-    /// there are fewer. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
+    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. The screen is cut into `bins_w`
+    /// times `bins_h` bins, but into no more than four a thread, and none smaller than 128 by 64 pixels; rows of the screen first, for
+    /// threads side by side would write to the same cache lines. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0; [`Error::OutOfMemory`] where the system starts no more
+    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`] where the system starts no more
     /// threads.
     pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
-        if bins_w == 0 || bins_h == 0 || max_jobs == 0 {
+        if bins_w == 0 || bins_h == 0 || max_jobs == 0 || threads > MAX_THREADS {
             return Err(Error::InvalidSize);
         }
         let mut pool = Self {
@@ -114,7 +116,7 @@ impl CullingThreadpool {
     ///
     /// # Safety
     /// The object stays where it is until another one is set or the pool is dropped; meanwhile it is used through the pool only, or
-    /// after a flush while nobody submits.
+    /// after a flush while nobody calls the pool.
     pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) {
         // SAFETY: the caller's contract.
         unsafe { self.exchange(moc.map(|moc| (moc, false))) }

@@ -1,6 +1,7 @@
 //! The object that a pool draws into, in bins that are locked one by one: one thread draws in a bin, or any number query it.
 
 use core::ptr::NonNull;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
@@ -81,7 +82,7 @@ pub(super) struct Target {
 impl Target {
     /// # Safety
     /// The object stays where it is until the target is dropped; meanwhile it is used through the target only, or
-    /// while nothing is in flight.
+    /// while nothing is in flight and nobody calls the pool.
     pub unsafe fn new(moc: NonNull<MaskedOcclusionCulling>, owned: bool, bins: Bins) -> Self {
         // SAFETY: the caller's contract.
         let tiles = tiles_of(unsafe { moc.as_ref() });
@@ -150,27 +151,34 @@ impl Target {
         let clip = self.grid.tiles(bin);
         let mut piece = self.bins[bin].piece.write().unwrap_or_else(PoisonError::into_inner);
         for run in work.chunk_by(|a, b| matches!((&**a, &**b), (Work::Triangles(..), Work::Triangles(..)))) {
-            match &*run[0] {
-                Work::Triangles(..) => {
-                    let kept = run.iter().filter_map(|work| match &**work {
-                        Work::Triangles(kept) => Some(kept),
-                        _ => None,
-                    });
-                    // SAFETY: whoever has the bin's lock for writing has its tiles and areas to itself.
-                    let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
-                    debug_assert_eq!(done, Ok(()), "a target has a buffer");
-                }
-                Work::Clear(number) => {
-                    if let Ok(buffer) = self.moc().buffer() {
-                        // SAFETY: as above.
-                        unsafe { buffer.clear_tiles(clip) };
-                    }
-                    piece.drawn = 0;
-                    // After the tiles, for those who look at them without the lock.
-                    self.bins[bin].clears.store(*number, Ordering::Release);
-                }
-                Work::Merge(others) => self.merge(others, clip),
+            // A panic would be a bug of ours; then occluders are missing, which is safe, but a clear that comes after them is not.
+            let _ = catch_unwind(AssertUnwindSafe(|| self.draw_run(bin, clip, &mut piece, run)));
+        }
+    }
+
+    /// Does work of one kind, which is one piece of it unless it is triangles.
+    fn draw_run(&self, bin: usize, clip: TileRect, piece: &mut Piece, run: &[Arc<Work>]) {
+        match &*run[0] {
+            Work::Triangles(..) => {
+                let kept = run.iter().filter_map(|work| match &**work {
+                    Work::Triangles(kept) => Some(kept),
+                    _ => None,
+                });
+                // SAFETY: whoever has the bin's lock for writing is the only one who writes its tiles and areas; those who
+                // keep read least depths, as words.
+                let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
+                debug_assert_eq!(done, Ok(()), "a target has a buffer");
             }
+            Work::Clear(number) => {
+                if let Ok(buffer) = self.moc().buffer() {
+                    // SAFETY: as above.
+                    unsafe { buffer.clear_tiles(clip) };
+                }
+                piece.drawn = 0;
+                // After the tiles, for those who look at them without the lock.
+                self.bins[bin].clears.store(*number, Ordering::Release);
+            }
+            Work::Merge(others) => self.merge(others, clip),
         }
     }
 
