@@ -62,40 +62,37 @@ impl Row<'_> {
     fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
         let Self { into, from, columns, y } = self;
         let alike = into.rule() == from.rule();
-        {
-            for x in columns {
-                // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at
-                // once, `y` is the block's; the caller vouches for who else uses them; both were
-                // made for their rules.
-                unsafe {
-                    let other = TilePlace::new(from, x, y);
-                    if Touched::of::<T>(from, other).none() {
-                        continue;
-                    }
-                    let at = TilePlace::new(into, x, y);
-                    let mut planes = load::<T, R>(s, into, at);
-                    let theirs = load::<T, O>(s, from, other);
-                    // Depths behind the reference change nothing.
-                    let nearest = s.max_positive(theirs.z0, theirs.z_near);
-                    if s.all(s.le(nearest, planes.z0)) {
-                        continue;
-                    }
-                    // Where all of the other is nearer than all that is here, it stays as it is. Tested lane by lane,
-                    // so that the bits do not depend on how many lanes there are.
-                    let taken = s.lt(s.max_positive(planes.z0, planes.z_near), theirs.z0);
-                    if alike && s.all(taken) {
-                        planes = theirs;
-                    } else {
-                        for &(mask, z) in &O::layers(s, &theirs)[..O::LAYERS] {
-                            R::insert(s, &mut planes, mask, z);
-                        }
-                        if alike {
-                            planes = choose(s, taken, &theirs, &planes);
-                        }
-                    }
-                    R::store(s, at.planes, &planes);
-                    s.store_least(at.least, into.tiles_w() as usize, planes.z0);
+        for x in columns {
+            // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at once, `y` is
+            // the block's; the caller vouches for who else uses them; both were made for their rules.
+            unsafe {
+                let other = TilePlace::new(from, x, y);
+                if Touched::of::<T>(from, other).none() {
+                    continue;
                 }
+                let at = TilePlace::new(into, x, y);
+                let mut planes = load::<T, R>(s, into, at);
+                let theirs = load::<T, O>(s, from, other);
+                // Depths behind the reference change nothing.
+                let nearest = s.max_positive(theirs.z0, theirs.z_near);
+                if s.all(s.le(nearest, planes.z0)) {
+                    continue;
+                }
+                // Where all of the other is nearer than all that is here, it stays as it is. Tested lane by lane,
+                // so that the bits do not depend on how many lanes there are.
+                let taken = s.lt(s.max_positive(planes.z0, planes.z_near), theirs.z0);
+                if alike && s.all(taken) {
+                    planes = theirs;
+                } else {
+                    for &(mask, z) in &O::layers(s, &theirs)[..O::LAYERS] {
+                        R::insert(s, &mut planes, mask, z);
+                    }
+                    if alike {
+                        planes = choose(s, taken, &theirs, &planes);
+                    }
+                }
+                R::store(s, at.planes, &planes);
+                s.store_least(at.least, into.tiles_w() as usize, planes.z0);
             }
         }
     }

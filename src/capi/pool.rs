@@ -3,7 +3,7 @@
 use core::ptr::NonNull;
 use std::sync::{Mutex, PoisonError};
 
-use super::mesh::MeshArguments;
+use super::mesh::{CheckedMesh, MeshArguments};
 use super::pointers::{check_out, objects, read, slice_mut, write};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_VertexLayout};
@@ -26,8 +26,31 @@ struct State {
 const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, offset_zw: 12 };
 
 impl MOC_Threadpool {
-    fn state(&self) -> State {
-        *self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    /// A mesh with what is set, checked.
+    ///
+    /// # Safety
+    /// As [`MeshArguments::check`].
+    unsafe fn mesh<'a>(
+        &self,
+        vertices: *const f32,
+        triangles: *const u32,
+        n_triangles: i32,
+        winding: i32,
+        clip_planes: i32,
+    ) -> Result<CheckedMesh<'a>, Error> {
+        let State { matrix, layout } = *self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let arguments = MeshArguments {
+            vertices,
+            vertex_floats: None,
+            triangles,
+            n_triangles,
+            model_to_clip: matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
+            winding,
+            clip_planes,
+            layout: &raw const layout,
+        };
+        // SAFETY: the caller's contract, and two locals.
+        self.pool.with_object(|moc| unsafe { arguments.check(moc) })
     }
 
     fn change(&self, change: impl FnOnce(&mut State)) {
@@ -261,29 +284,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     guard(|| {
         // SAFETY: the caller's contract.
         let handle = unsafe { handle(pool) }?;
-        let state = handle.state();
-        let mesh = state.mesh(vertices, triangles, n_triangles, winding, clip_planes);
         // SAFETY: the caller's contract.
-        let mesh = handle.pool.with_object(|moc| unsafe { mesh.check(moc) })?;
+        let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
         unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
     })
-}
-
-impl State {
-    fn mesh(
-        &self,
-        vertices: *const f32,
-        triangles: *const u32,
-        n_triangles: i32,
-        winding: i32,
-        clip_planes: i32,
-    ) -> MeshArguments {
-        let model_to_clip = self.matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr());
-        let layout = &raw const self.layout;
-        let vertex_floats = None;
-        MeshArguments { vertices, vertex_floats, triangles, n_triangles, model_to_clip, winding, clip_planes, layout }
-    }
 }
 
 /// MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
@@ -330,10 +335,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     let query = || {
         // SAFETY: the caller's contract.
         let handle = unsafe { handle(pool) }?;
-        let state = handle.state();
-        let mesh = state.mesh(vertices, triangles, n_triangles, winding, clip_planes);
         // SAFETY: the caller's contract.
-        let mesh = handle.pool.with_object(|moc| unsafe { mesh.check(moc) })?;
+        let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
         unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
     };

@@ -4,7 +4,7 @@
 //! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same four
 //! gathers. Without areas half of a castle's triangles that got edges had no open tile.
 
-use super::setup::Purpose;
+use super::setup::{Purpose, VERTEX_MARGIN};
 use super::survivors::Corner;
 use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
 use crate::buffer::{Buffer, TileRect};
@@ -38,6 +38,8 @@ pub(super) struct Boxes<S: Simd> {
     pub tile_y1: S::I,
     /// Boxes that hold a pixel.
     pub inside: S::M,
+    /// A bound of the nearest corner's true depth.
+    pub nearest: S::F,
 }
 
 impl<S: Simd> Boxes<S> {
@@ -65,27 +67,27 @@ impl<S: Simd> Boxes<S> {
             tile_y0: s.sra::<3>(row0),
             tile_y1: s.sra::<3>(s.sub_i(row1, s.i(1))),
             inside: s.and_m(s.gt_i(column1, column0), s.gt_i(row1, row0)),
+            nearest: s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN)),
         }
     }
 
-    /// Boxes that show nothing at `nearest` or farther inside of a rectangle of tiles, or have nothing there.
+    /// Boxes whose triangles are hidden inside of a rectangle of tiles, or have nothing there.
     ///
     /// How current areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
     /// would tell, and it leaves them out.
     ///
     /// # Safety
-    /// Nobody else writes to the tiles and areas of the rectangle, unless `RACING`: then others may draw there, by stores of whole words. What
-    /// is read may be old, which is safe: between clears, least depths only rise.
+    /// Nobody else writes to the tiles and areas of the rectangle, unless `RACING`: then others may draw there, by stores of
+    /// whole words. What is read may be old, which is safe: between clears, least depths only rise.
     #[inline(always)]
     pub unsafe fn hidden<const RACING: bool>(
         &self,
         s: S,
         buffer: &Buffer,
-        look: Look,
+        Look { clip, areas: with_areas }: Look,
         purpose: Purpose,
-        nearest: S::F,
     ) -> S::M {
-        let Look { clip, areas: with_areas } = look;
+        let nearest = self.nearest;
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
         if clip != buffer.all_tiles() {

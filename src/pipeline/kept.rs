@@ -8,7 +8,7 @@ use super::batch::Batch;
 use super::boxes::{Boxes, Look};
 use super::last_step::{All, LastStep, take_survivors};
 use super::scratch::MAX_LANES;
-use super::setup::{Alive, Purpose, Setup, VERTEX_MARGIN};
+use super::setup::{Alive, Purpose, Setup};
 use super::survivors::{Corner, ROOM, Survivors};
 use crate::buffer::{Buffer, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::Simd;
@@ -110,9 +110,8 @@ impl LastStep for Keep<'_> {
         let mut open = active;
         if self.sift {
             let boxes = Boxes::new(s, buffer, Purpose::Draw, corners);
-            let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
             // SAFETY: whoever draws meanwhile stores least depths as words, in which old ones are safe.
-            let hidden = unsafe { boxes.hidden::<true>(s, buffer, setup.look, Purpose::Draw, nearest) };
+            let hidden = unsafe { boxes.hidden::<true>(s, buffer, setup.look, Purpose::Draw) };
             open = s.and_not_m(hidden, s.and_m(active, boxes.inside));
         }
         let bits = s.mask_bits(open);

@@ -134,8 +134,8 @@ pub(crate) unsafe fn draw_list(
     simd::run(implementation, DrawList { buffer, list, scissor })
 }
 
-/// Projects a mesh and keeps what may be drawn, for some pieces of the screen, after what was kept before. `sift`: without what the buffer hides already;
-/// meanwhile other threads may be drawing into it by [`draw_kept`], but not clearing it.
+/// Projects a mesh and keeps what may be drawn, for some pieces of the screen, after what was kept before. `sift`: without
+/// what the buffer hides already; meanwhile other threads may be drawing into it by [`draw_kept`], but not clearing it.
 ///
 /// # Safety
 /// Every vertex from the lowest to the highest that the mesh names can be read.
@@ -151,7 +151,8 @@ pub(crate) unsafe fn keep(
 }
 
 /// Draws what was kept, in order, inside of a piece of the screen: a rectangle of tiles that begins with an area and ends with
-/// one or at the buffer's end, and its number among the cuts that it was kept for. `drawn` counts for the rectangle when its areas are due.
+/// one or at the buffer's end, and its number among the cuts that it was kept for. `drawn` counts for the rectangle when its
+/// areas are due.
 ///
 /// # Safety
 /// Nobody else writes the rectangle's tiles and areas; others may read least depths as words.
@@ -170,38 +171,30 @@ pub(crate) fn max_index(implementation: Implementation, indices: &[u32]) -> Opti
     (!indices.is_empty()).then(|| simd::run(implementation, chunk::IndexRange(indices)).1)
 }
 
-struct DrawMesh<'a> {
-    buffer: &'a Buffer,
-    camera: &'a Camera,
-    mesh: &'a Mesh<'a>,
+macro_rules! mesh_job {
+    ($job:ident, |$s:ident, $buffer:ident| $last:expr) => {
+        struct $job<'a> {
+            buffer: &'a Buffer,
+            camera: &'a Camera,
+            mesh: &'a Mesh<'a>,
+        }
+
+        impl Job for $job<'_> {
+            type Output = (CullingResult, Tally);
+
+            #[inline(always)]
+            fn run<S: Simd>(self, $s: S) -> Self::Output {
+                let $buffer = self.buffer;
+                let mut last = $last;
+                cull::mesh($s, $buffer, self.camera, self.mesh, &mut last)
+            }
+        }
+    };
 }
 
-impl Job for DrawMesh<'_> {
-    type Output = (CullingResult, Tally);
-
-    #[inline(always)]
-    fn run<S: Simd>(self, s: S) -> Self::Output {
-        // SAFETY: the caller of `draw` vouches for the buffer.
-        let mut last = unsafe { Draw::new(s, self.buffer) };
-        cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
-    }
-}
-
-struct TestMesh<'a> {
-    buffer: &'a Buffer,
-    camera: &'a Camera,
-    mesh: &'a Mesh<'a>,
-}
-
-impl Job for TestMesh<'_> {
-    type Output = (CullingResult, Tally);
-
-    #[inline(always)]
-    fn run<S: Simd>(self, s: S) -> Self::Output {
-        let mut last = Query::new(s, self.buffer);
-        cull::mesh(s, self.buffer, self.camera, self.mesh, &mut last)
-    }
-}
+// SAFETY: the caller of `draw` vouches for the buffer.
+mesh_job!(DrawMesh, |s, buffer| unsafe { Draw::new(s, buffer) });
+mesh_job!(TestMesh, |s, buffer| Query::new(s, buffer));
 
 struct BinMesh<'a, 'b, 'c> {
     buffer: &'a Buffer,

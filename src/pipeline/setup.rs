@@ -77,11 +77,11 @@ pub(super) fn set_up<S: Simd>(
     let query = purpose == Purpose::Query;
     let boxes = Boxes::new(s, buffer, purpose, &[a, b, c]);
     let inside = s.and_m(active, boxes.inside);
-    let nearest = s.mul(s.max(a[2], s.max(b[2], c[2])), s.f(1.0 + VERTEX_MARGIN));
+    let nearest = boxes.nearest;
     let mut hidden = 0;
     if purpose != Purpose::Bin {
         // SAFETY: the pipeline's caller vouches for the buffer.
-        hidden = s.mask_bits(unsafe { boxes.hidden::<false>(s, buffer, look, purpose, nearest) });
+        hidden = s.mask_bits(unsafe { boxes.hidden::<false>(s, buffer, look, purpose) });
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();

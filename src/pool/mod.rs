@@ -51,13 +51,14 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. The screen is cut into `bins_w`
-    /// times `bins_h` bins, but into no more than four a thread, and none smaller than 128 by 64 pixels; rows of the screen first, for
-    /// threads side by side would write to the same cache lines. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
+    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. The screen is cut into `bins_w` times `bins_h`
+    /// bins, but into no more than four a thread, and none smaller than 128 by 64 pixels; rows of the screen first, for
+    /// threads side by side would write to the same cache lines. At most `max_jobs` batches of calls are in flight. Without
+    /// threads, whoever flushes does the work.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`] where the system starts no more
-    /// threads.
+    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
+    /// where the system starts no more threads.
     pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || threads > MAX_THREADS {
             return Err(Error::InvalidSize);
@@ -210,7 +211,7 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<(), Error> {
-        self.with_buffer(|target| target.moc().check_mesh(&vertices, triangles))?;
+        self.with_object(|moc| moc.check_mesh(&vertices, triangles))?;
         // SAFETY: `check_mesh` saw that every index names a vertex; the rest is the caller's contract.
         unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
     }

@@ -133,13 +133,9 @@ impl Target {
         let clears = calls.iter().map(|call| call.clears).max();
         let sift = clears.is_some_and(|clears| self.is_cleared(clears));
         for call in calls {
-            // SAFETY: the caller's contract; an array of no triangles may be anywhere.
-            let triangles = match call.indices {
-                0 => &[],
-                n => unsafe { core::slice::from_raw_parts(call.triangles, n) },
-            };
             // SAFETY: the caller's contract.
             let done = unsafe {
+                let triangles = core::slice::from_raw_parts(call.triangles, call.indices);
                 self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept)
             };
             debug_assert_eq!(done, Ok(()), "a target has a buffer");
@@ -191,9 +187,8 @@ impl Target {
         }
     }
 
-    /// Asks while nobody draws in the bins that hold a tile of a rectangle, or a least depth that lies in a vector with one of its
-    /// tiles'. What was drawn before a clear that was submitted, but
-    /// not done yet, hides nothing.
+    /// Asks while nobody draws in the bins that hold a tile of a rectangle, or a least depth that lies in a vector with one of
+    /// its tiles'. What was drawn before a clear that was submitted, but not done yet, hides nothing.
     pub fn query(
         &self,
         tiles: TileRect,
