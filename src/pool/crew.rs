@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
 
 use super::schedule::{Schedule, Task};
-use super::sync::{Arc, Condvar, Mutex, MutexGuard};
+use super::sync::{Arc, Condvar, Glance, Mutex, MutexGuard};
 use super::target::{Call, Target, Work};
 use crate::pipeline::Kept;
 
@@ -18,6 +18,8 @@ pub(super) struct Crew {
     work: Condvar,
     /// Something was finished.
     progress: Condvar,
+    /// Counts what was finished.
+    finished: Glance,
 }
 
 struct State {
@@ -47,7 +49,7 @@ impl Crew {
             suspended: true,
             stopped: false,
         };
-        Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new() }
+        Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new(), finished: Glance::default() }
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -121,6 +123,7 @@ impl Crew {
                 });
             }
         }
+        self.finished.changed();
         if state.waiting > 0 {
             self.progress.notify_all();
         }
@@ -131,6 +134,14 @@ impl Crew {
     fn help<'a>(&'a self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
         if let Some(task) = state.schedule.claim(HELPER) {
             return self.perform(state, task);
+        }
+        // Workers, who wait between frames, too, sleep at once; here the last of a frame is waited for.
+        let count = self.finished.count();
+        drop(state);
+        self.finished.wait(count);
+        state = self.lock();
+        if self.finished.count() != count {
+            return state;
         }
         state.waiting += 1;
         let mut state = self.progress.wait(state).unwrap_or_else(PoisonError::into_inner);

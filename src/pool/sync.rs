@@ -1,3 +1,35 @@
 //! What threads wait on, in one place, so that a test can put a model in its stead (`tests/pool_interleavings.rs`).
 
+use core::hint::spin_loop;
+use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
 pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+
+/// A thread takes longer to fall asleep and wake than most pieces of work take.
+const GLANCE: Duration = Duration::from_micros(20);
+
+/// How often there was progress, for those who wait a moment before they sleep. It only says when to look again: what there is
+/// to see is under the lock.
+#[derive(Default)]
+pub(super) struct Glance(AtomicU64);
+
+impl Glance {
+    pub fn changed(&self) {
+        self.0.fetch_add(1, Relaxed);
+    }
+
+    pub fn count(&self) -> u64 {
+        self.0.load(Relaxed)
+    }
+
+    /// Waits until the count is another one, but only a moment.
+    pub fn wait(&self, count: u64) {
+        let begin = Instant::now();
+        while self.count() == count && begin.elapsed() < GLANCE {
+            for _ in 0..8 {
+                spin_loop();
+            }
+        }
+    }
+}
