@@ -45,7 +45,9 @@
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
  * `#if QUICK_MASK` of the program then is false, and -Wundef says so. Define them to have it as before.
  *
- * Accepted without effect, because the answer holds always: CLIPPING_PRESERVES_ORDER (the order is kept).
+ * Accepted without effect, because the answer holds always: CLIPPING_PRESERVES_ORDER (the order is kept),
+ * MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, and costs nothing while it is off;
+ * FrameRecorder.h reads recordings).
  */
 #ifndef USE_D3D
 #define USE_D3D 1
@@ -62,11 +64,8 @@
 #ifndef MOC_RECORDER_ENABLE
 #define MOC_RECORDER_ENABLE 0
 #endif
-#if MOC_RECORDER_ENABLE
 #ifndef MOC_RECORDER_ENABLE_PLAYBACK
 #define MOC_RECORDER_ENABLE_PLAYBACK 0
-#endif
-#error "MOC_RECORDER_ENABLE: the frame recorder is not in this version of the library"
 #endif
 
 /* The switches as the template argument of Create. Bits 0 and 1: MOC_UpdateRule; 2: MOC_YAxis; 3: precise
@@ -415,6 +414,34 @@ public:
     void GetAllocFreeCallback(pfnAlignedAlloc &allocCallback, pfnAlignedFree &freeCallback) const
     {
         MOC_GetAllocFreeCallback(this, &allocCallback, &freeCallback);
+    }
+
+    /**
+     * Records clears, draws and queries, with their answers, into a file from now on; those of a thread pool, too.
+     * False where the file cannot be made, the object has no buffer, or it records already. Once a call is in the file,
+     * setting another near plane or resolution ends it. BinTriangles, RenderTrilist and MergeBuffer are not recorded.
+     */
+    bool RecorderStart(const char *outputFilePath) const
+    {
+        return MOC_RecorderStart(this, outputFilePath) == MOC_STATUS_OK;
+    }
+
+    /** Ends the recording, if there is one. MOC_RecorderStop says whether all of it was written. */
+    void RecorderStop() const { MOC_RecorderStop(this); }
+
+    /**
+     * Records a draw that RenderTriangles is not told of, such as that of a binned mesh. Note that clip planes and winding
+     * stand the other way round than in RenderTriangles.
+     */
+    void RecordRenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
+                               const float *modelToClipMatrix = nullptr, ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
+                               BackfaceWinding bfWinding = BACKFACE_CW,
+                               const VertexLayout &vtxLayout = VertexLayout(16, 4, 12),
+                               CullingResult cullingResult = static_cast<CullingResult>(MOC_RESULT_UNKNOWN)) const
+    {
+        const MOC_VertexLayout layout = Layout(vtxLayout);
+        MOC_RecordRenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, clipPlaneMask, bfWinding, &layout,
+                                  cullingResult);
     }
 
     /* The library makes and frees objects; this class only names them. */

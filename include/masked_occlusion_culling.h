@@ -37,6 +37,11 @@ typedef struct MaskedOcclusionCulling MaskedOcclusionCulling;
 #define MOC_ABI_VERSION 1
 
 /**
+ * No answer is known, in recordings.
+ */
+#define MOC_RESULT_UNKNOWN -1
+
+/**
  * What a call reports. Where it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the
  * function says otherwise.
  */
@@ -95,6 +100,18 @@ enum MOC_Status
      * The library failed inside. No memory was harmed, but the call did not finish.
      */
     MOC_STATUS_INTERNAL = 11,
+    /**
+     * A recording's file cannot be made, written or read.
+     */
+    MOC_STATUS_FILE = 12,
+    /**
+     * A file is no recording, or it is cut or broken.
+     */
+    MOC_STATUS_INVALID_RECORDING = 13,
+    /**
+     * A recording is under way already.
+     */
+    MOC_STATUS_BUSY = 14,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -310,6 +327,44 @@ typedef int32_t MOC_ClipPlanes;
 #endif // __cplusplus
 
 /**
+ * What a recorded call is.
+ */
+enum MOC_RecordedCallKind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * MOC_RenderTriangles.
+     */
+    MOC_RECORDED_RENDER_TRIANGLES = 0,
+    /**
+     * MOC_TestRect.
+     */
+    MOC_RECORDED_TEST_RECT = 1,
+    /**
+     * MOC_TestTriangles.
+     */
+    MOC_RECORDED_TEST_TRIANGLES = 2,
+    /**
+     * MOC_ClearBuffer.
+     */
+    MOC_RECORDED_CLEAR_BUFFER = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum MOC_RecordedCallKind MOC_RecordedCallKind;
+#else
+typedef int32_t MOC_RecordedCallKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A recording that was read; see MOC_RecordingLoad.
+ */
+typedef struct MOC_Recording MOC_Recording;
+
+/**
  * A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
  */
 typedef struct MOC_Threadpool MOC_Threadpool;
@@ -491,6 +546,78 @@ typedef struct MOC_Statistics {
      */
     struct MOC_OccludeeStatistics occludees;
 } MOC_Statistics;
+
+/**
+ * What a recording begins with.
+ */
+typedef struct MOC_RecordingInfo {
+    /**
+     * The near plane, in clip-space w.
+     */
+    float near_clip_plane;
+    /**
+     * In pixels.
+     */
+    uint32_t width;
+    /**
+     * In pixels.
+     */
+    uint32_t height;
+    /**
+     * How many calls were recorded.
+     */
+    uint32_t num_calls;
+} MOC_RecordingInfo;
+
+/**
+ * A recorded call. What its kind does not have is zero. The pointers stay right until the recording is destroyed.
+ */
+typedef struct MOC_RecordedCall {
+    /**
+     * A MOC_RecordedCallKind.
+     */
+    int32_t kind;
+    /**
+     * The MOC_CullingResult that was answered, or MOC_RESULT_UNKNOWN.
+     */
+    int32_t result;
+    /**
+     * Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min.
+     */
+    float rect[5];
+    /**
+     * Of meshes: the arguments of the call, and the length of the vertices in floats. The matrix is null where there is none.
+     */
+    const float *vertices;
+    /**
+     * As above.
+     */
+    size_t vertex_floats;
+    /**
+     * As above.
+     */
+    const uint32_t *triangles;
+    /**
+     * As above.
+     */
+    int32_t n_triangles;
+    /**
+     * As above.
+     */
+    const float *model_to_clip;
+    /**
+     * As above.
+     */
+    int32_t winding;
+    /**
+     * As above.
+     */
+    int32_t clip_planes;
+    /**
+     * As above.
+     */
+    struct MOC_VertexLayout layout;
+} MOC_RecordedCall;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1125,6 +1252,100 @@ MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *po
 MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
                                       const MaskedOcclusionCulling *const *others,
                                       uint32_t count);
+
+/**
+ * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
+ * format. `path` is what the system calls the file, UTF-8 on Windows. Setting another near plane or resolution ends the
+ * recording; merges and lists are not recorded.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
+ *
+ * # Safety
+ * `moc` is null or from MOC_Create and not destroyed; `path` is null or ends with a zero.
+ */
+MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
+                             const char *path);
+
+/**
+ * Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
+ *
+ * # Safety
+ * `moc` is null or from MOC_Create and not destroyed.
+ */
+MOC_Status MOC_RecorderStop(const MaskedOcclusionCulling *moc);
+
+/**
+ * Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. Note the order of
+ * `clip_planes` and `winding`, which is that of the class that engines know. `result`: a MOC_CullingResult, or
+ * MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+ *
+ * Errors: those of MOC_RenderTriangles; nothing is recorded.
+ *
+ * # Safety
+ * That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
+ */
+MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
+                                     const float *vertices,
+                                     const uint32_t *triangles,
+                                     int32_t n_triangles,
+                                     const float *model_to_clip,
+                                     int32_t clip_planes,
+                                     int32_t winding,
+                                     const struct MOC_VertexLayout *layout,
+                                     int32_t result);
+
+/**
+ * Reads a recording and writes it to `out` (null there on errors).
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+ *
+ * # Safety
+ * `path` is null or ends with a zero, `out` is null or can be written.
+ */
+MOC_Status MOC_RecordingLoad(const char *path,
+                             struct MOC_Recording **out);
+
+/**
+ * The same of a file that was read into memory, which is not needed afterwards.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
+ *
+ * # Safety
+ * `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
+ */
+MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC_Recording **out);
+
+/**
+ * Frees a recording. Null is allowed.
+ *
+ * # Safety
+ * `recording` is null or from MOC_RecordingLoad or MOC_RecordingFromMemory, and not destroyed.
+ */
+MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
+
+/**
+ * Writes to `out` what the recording begins with.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * # Safety
+ * `recording` is null or a live one, `out` is null or can be written.
+ */
+MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording, struct MOC_RecordingInfo *out);
+
+/**
+ * Writes the call number `index` to `out`.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
+ *
+ * # Safety
+ * `recording` is null or a live one, `out` is null or can be written.
+ */
+MOC_Status MOC_RecordingGetCall(const struct MOC_Recording *recording,
+                                uint32_t index,
+                                struct MOC_RecordedCall *out);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -2,67 +2,20 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use glam::Mat4;
-
 use crate::bins::TriList;
 use crate::buffer::{Buffer, TileRect};
 use crate::pipeline::{self, Camera, Cuts, Kept, Mesh};
+use crate::recorder::Recorder;
 use crate::rectangle;
 use crate::statistics::Counters;
 use crate::vertices::VertexSource;
 use crate::{
-    Allocator, BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, UpdateRule,
-    Vertices, YAxis,
+    Allocator, ClipPlanes, CullingResult, DrawOptions, Error, Implementation, ScissorRect, Settings, Statistics,
+    UpdateRule, Vertices, YAxis,
 };
 
 /// The largest width and height of a buffer, in pixels.
 pub(crate) const MAX_SIZE: u32 = 16_384;
-
-/// What an object is made with; none of it changes afterwards.
-#[derive(Clone, Copy)]
-pub struct Settings {
-    /// The highest instruction set that may be used.
-    pub implementation: Implementation,
-    /// How sub-tiles take in triangles.
-    pub update_rule: UpdateRule,
-    /// The direction in which rows are counted.
-    pub y_axis: YAxis,
-    /// Where the buffer's memory comes from.
-    pub allocator: Allocator,
-    /// Whether draws and queries are counted for [`MaskedOcclusionCulling::statistics`]: a tenth of the time of a draw. Dropped
-    /// triangles are counted always.
-    pub statistics: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            implementation: Implementation::Avx512,
-            update_rule: UpdateRule::default(),
-            y_axis: YAxis::default(),
-            allocator: Allocator::SYSTEM,
-            statistics: false,
-        }
-    }
-}
-
-/// How a mesh is drawn, tested or binned.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DrawOptions {
-    /// Takes vertices (x, y, z, 1) to clip space; without it they are clip space (x, y, w) already.
-    pub model_to_clip: Option<Mat4>,
-    /// Which triangles face away.
-    pub winding: BackfaceWinding,
-    /// Which planes the mesh may cross; see [`ClipPlanes`].
-    pub clip_planes: ClipPlanes,
-}
-
-impl DrawOptions {
-    /// The default options with a matrix.
-    pub fn with_matrix(model_to_clip: Mat4) -> Self {
-        Self { model_to_clip: Some(model_to_clip), ..Self::default() }
-    }
-}
 
 /// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
 ///
@@ -78,6 +31,7 @@ pub struct MaskedOcclusionCulling {
     near: AtomicU32,
     buffer: Option<Buffer>,
     counters: Counters,
+    recorder: Recorder,
 }
 
 impl Default for MaskedOcclusionCulling {
@@ -98,6 +52,7 @@ impl MaskedOcclusionCulling {
             near: AtomicU32::new(0),
             buffer: None,
             counters: Counters::default(),
+            recorder: Recorder::default(),
         }
     }
 
@@ -131,6 +86,7 @@ impl MaskedOcclusionCulling {
         }
         if self.resolution() != Some((width, height)) {
             self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator, self.statistics)?);
+            self.recorder.changed(self.near_clip_plane(), self.resolution());
         }
         self.clear_buffer()
     }
@@ -163,7 +119,9 @@ impl MaskedOcclusionCulling {
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
         }
-        self.near.store(near.to_bits(), Relaxed);
+        if self.near.swap(near.to_bits(), Relaxed) != near.to_bits() {
+            self.recorder.changed(near, self.resolution());
+        }
         Ok(())
     }
 
@@ -178,6 +136,7 @@ impl MaskedOcclusionCulling {
     /// [`Error::NoBuffer`].
     pub fn clear_buffer(&mut self) -> Result<(), Error> {
         self.buffer.as_mut().ok_or(Error::NoBuffer)?.clear();
+        self.recorder.clear_buffer();
         Ok(())
     }
 
@@ -248,6 +207,8 @@ impl MaskedOcclusionCulling {
         // SAFETY: the caller's contract for the vertices; `&mut self` keeps every other user of the buffer away.
         let (result, tally) = unsafe { pipeline::draw(self.implementation, buffer, &camera, &mesh) };
         self.counters.add_draw_alone(self.statistics, &tally);
+        // SAFETY: the caller's contract.
+        unsafe { self.recorder.render_triangles(Some(result), &mesh) };
         Ok(result)
     }
 
@@ -279,10 +240,23 @@ impl MaskedOcclusionCulling {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        let camera = self.camera(options)?;
         let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract.
+        unsafe {
+            let result = self.ask_triangles(&mesh)?;
+            self.recorder.test_triangles(Some(result), &mesh);
+            Ok(result)
+        }
+    }
+
+    /// The same, not recorded.
+    ///
+    /// # Safety
+    /// As there.
+    pub(crate) unsafe fn ask_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        let camera = self.camera(mesh.options)?;
         // SAFETY: the caller's contract for the vertices.
-        let (result, tally) = unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, &mesh) };
+        let (result, tally) = unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, mesh) };
         self.counters.add_query(self.statistics, 0, &tally);
         Ok(result)
     }
@@ -303,9 +277,16 @@ impl MaskedOcclusionCulling {
         y_max: f32,
         w_min: f32,
     ) -> Result<CullingResult, Error> {
+        let edges = [x_min, y_min, x_max, y_max];
+        let result = self.ask_rect(edges, w_min)?;
+        self.recorder.test_rect(Some(result), edges, w_min);
+        Ok(result)
+    }
+
+    /// The same, not recorded.
+    pub(crate) fn ask_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
         let buffer = self.buffer()?;
-        let (result, tally) =
-            rectangle::test(self.implementation, buffer, self.y_axis, [x_min, y_min, x_max, y_max], w_min);
+        let (result, tally) = rectangle::test(self.implementation, buffer, self.y_axis, edges, w_min);
         self.counters.add_query(self.statistics, 1, &tally);
         Ok(result)
     }
@@ -443,6 +424,10 @@ impl MaskedOcclusionCulling {
     /// All that was counted since the object was made; without [`Settings::statistics`] only the dropped triangles.
     pub fn statistics(&self) -> Statistics {
         self.counters.snapshot()
+    }
+
+    pub(crate) fn recorder(&self) -> &Recorder {
+        &self.recorder
     }
 
     pub(crate) fn buffer(&self) -> Result<&Buffer, Error> {

@@ -28,6 +28,13 @@ pub enum Error {
     OutOfMemory,
     /// The library failed inside; no memory was harmed, but the call did not finish (C interface only).
     Internal,
+    /// A recording's file could not be made, written or read (C interface only; in Rust see
+    /// [`RecordingError`](crate::RecordingError)).
+    File,
+    /// A file is no recording, or it is cut or broken (C interface only).
+    InvalidRecording,
+    /// The object records already (C interface only).
+    Busy,
 }
 
 impl fmt::Display for Error {
@@ -44,6 +51,9 @@ impl fmt::Display for Error {
             Error::ListFull => "a triangle list is full",
             Error::OutOfMemory => "out of memory",
             Error::Internal => "the library failed inside",
+            Error::File => "a recording's file cannot be made, written or read",
+            Error::InvalidRecording => "a file is no recording, or it is cut or broken",
+            Error::Busy => "a recording is under way already",
         })
     }
 }

@@ -25,7 +25,9 @@ mod culling;
 mod error;
 mod pipeline;
 mod pool;
+mod recorder;
 mod rectangle;
+mod settings;
 mod simd;
 mod statistics;
 mod transform;
@@ -34,9 +36,11 @@ mod vertices;
 
 pub use allocator::Allocator;
 pub use bins::TriList;
-pub use culling::{DrawOptions, MaskedOcclusionCulling, Settings};
+pub use culling::MaskedOcclusionCulling;
 pub use error::Error;
 pub use pool::{CullingThreadpool, Scope};
+pub use recorder::{RecordedCall, RecordedMesh, RecordedRect, Recording, RecordingError};
+pub use settings::{DrawOptions, Settings};
 pub use transform::transform_vertices;
 pub use types::{
     BackfaceWinding, ClipPlanes, CullingResult, Implementation, OccludeeStatistics, OccluderStatistics, ScissorRect,

@@ -76,6 +76,13 @@ pub enum BackfaceWinding {
     CounterClockwise = 2,
 }
 
+impl BackfaceWinding {
+    /// The winding of a number, as C and recordings have it.
+    pub(crate) fn from_number(n: i32) -> Option<Self> {
+        [Self::None, Self::Clockwise, Self::CounterClockwise].into_iter().find(|&winding| winding as i32 == n)
+    }
+}
+
 /// What a draw or a query found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
@@ -86,6 +93,13 @@ pub enum CullingResult {
     Occluded = 1,
     /// It lies outside of the view, or faces away.
     ViewCulled = 3,
+}
+
+impl CullingResult {
+    /// The answer of a number, as C and recordings have it.
+    pub(crate) fn from_number(n: i32) -> Option<Self> {
+        [Self::Visible, Self::Occluded, Self::ViewCulled].into_iter().find(|&result| result as i32 == n)
+    }
 }
 
 /// The frustum planes that a mesh may cross: a set of flags.

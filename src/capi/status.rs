@@ -44,6 +44,12 @@ pub enum MOC_Status {
     MOC_STATUS_OUT_OF_MEMORY = 10,
     /// The library failed inside. No memory was harmed, but the call did not finish.
     MOC_STATUS_INTERNAL = 11,
+    /// A recording's file cannot be made, written or read.
+    MOC_STATUS_FILE = 12,
+    /// A file is no recording, or it is cut or broken.
+    MOC_STATUS_INVALID_RECORDING = 13,
+    /// A recording is under way already.
+    MOC_STATUS_BUSY = 14,
 }
 
 impl From<Error> for MOC_Status {
@@ -60,12 +66,15 @@ impl From<Error> for MOC_Status {
             Error::ListFull => Self::MOC_STATUS_LIST_FULL,
             Error::OutOfMemory => Self::MOC_STATUS_OUT_OF_MEMORY,
             Error::Internal => Self::MOC_STATUS_INTERNAL,
+            Error::File => Self::MOC_STATUS_FILE,
+            Error::InvalidRecording => Self::MOC_STATUS_INVALID_RECORDING,
+            Error::Busy => Self::MOC_STATUS_BUSY,
         }
     }
 }
 
 /// One text a status, in their order.
-const TEXTS: [&CStr; 12] = [
+const TEXTS: [&CStr; 15] = [
     c"done",
     c"a pointer that has to name something is null",
     c"an enumeration has no such value",
@@ -78,6 +87,9 @@ const TEXTS: [&CStr; 12] = [
     c"a triangle list is full",
     c"out of memory",
     c"the library failed inside",
+    c"a recording's file cannot be made, written or read",
+    c"a file is no recording, or it is cut or broken",
+    c"a recording is under way already",
 ];
 
 /// The MOC_ABI_VERSION that the library was built with.
@@ -141,6 +153,9 @@ mod tests {
             Error::ListFull,
             Error::OutOfMemory,
             Error::Internal,
+            Error::File,
+            Error::InvalidRecording,
+            Error::Busy,
         ];
         for (i, error) in errors.into_iter().enumerate() {
             assert_eq!(MOC_Status::from(error) as usize, i + 1);

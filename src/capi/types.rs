@@ -3,8 +3,8 @@
 use core::ffi::c_void;
 
 use crate::{
-    BackfaceWinding, ClipPlanes, Error, Implementation, ScissorRect, Statistics, TriList, UpdateRule, VertexLayout,
-    YAxis,
+    BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, TriList, UpdateRule,
+    VertexLayout, YAxis,
 };
 
 /// An instruction set. All of them give the same bits.
@@ -263,9 +263,9 @@ const _: () = {
     assert!(MOC_BackfaceWinding::MOC_BACKFACE_NONE as i32 == BackfaceWinding::None as i32);
     assert!(MOC_BackfaceWinding::MOC_BACKFACE_CW as i32 == BackfaceWinding::Clockwise as i32);
     assert!(MOC_BackfaceWinding::MOC_BACKFACE_CCW as i32 == BackfaceWinding::CounterClockwise as i32);
-    assert!(MOC_CullingResult::MOC_VISIBLE as i32 == crate::CullingResult::Visible as i32);
-    assert!(MOC_CullingResult::MOC_OCCLUDED as i32 == crate::CullingResult::Occluded as i32);
-    assert!(MOC_CullingResult::MOC_VIEW_CULLED as i32 == crate::CullingResult::ViewCulled as i32);
+    assert!(MOC_CullingResult::MOC_VISIBLE as i32 == CullingResult::Visible as i32);
+    assert!(MOC_CullingResult::MOC_OCCLUDED as i32 == CullingResult::Occluded as i32);
+    assert!(MOC_CullingResult::MOC_VIEW_CULLED as i32 == CullingResult::ViewCulled as i32);
     assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_NEAR as u32 == ClipPlanes::NEAR.bits());
     assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_LEFT as u32 == ClipPlanes::LEFT.bits());
     assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_RIGHT as u32 == ClipPlanes::RIGHT.bits());
@@ -305,12 +305,11 @@ pub(super) fn y_axis(value: i32) -> Result<YAxis, Error> {
 }
 
 pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Error> {
-    Ok(match value {
-        0 => BackfaceWinding::None,
-        1 => BackfaceWinding::Clockwise,
-        2 => BackfaceWinding::CounterClockwise,
-        _ => return Err(Error::InvalidEnum),
-    })
+    BackfaceWinding::from_number(value).ok_or(Error::InvalidEnum)
+}
+
+pub(super) fn culling_result(value: i32) -> Result<CullingResult, Error> {
+    CullingResult::from_number(value).ok_or(Error::InvalidEnum)
 }
 
 pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Error> {

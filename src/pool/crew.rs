@@ -189,6 +189,11 @@ impl Crew {
         }
     }
 
+    /// Nothing is in flight.
+    pub fn is_done(&self) -> bool {
+        self.lock().schedule.is_done()
+    }
+
     /// Draws into another target from now on. Nothing is in flight, and the caller keeps others from submitting.
     pub fn set_target(&self, target: Option<Arc<Target>>) {
         let mut state = self.lock();

@@ -25,6 +25,7 @@ use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::thread::{self, JoinHandle};
 
+use crate::pipeline::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
 use crew::Crew;
@@ -184,6 +185,7 @@ impl CullingThreadpool {
     pub fn clear_buffer(&self) -> Result<(), Error> {
         self.with_buffer(|target| {
             self.crew.submit_ready(|| Work::Clear(target.count_clear()));
+            target.moc().recorder().clear_buffer();
             Ok(())
         })
     }
@@ -231,6 +233,8 @@ impl CullingThreadpool {
                 let (triangles, indices) = (piece.as_ptr(), piece.len());
                 self.crew.submit(Call { vertices, triangles, indices, options: *options, near, clears: 0 });
             }
+            // SAFETY: the caller's contract.
+            unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
             Ok(())
         })
     }
@@ -267,8 +271,11 @@ impl CullingThreadpool {
         w_min: f32,
     ) -> Result<CullingResult, Error> {
         self.with_buffer(|target| {
-            let tiles = target.moc().rectangle_tiles([x_min, y_min, x_max, y_max])?;
-            target.query(tiles, |moc| moc.test_rect(x_min, y_min, x_max, y_max, w_min))
+            let edges = [x_min, y_min, x_max, y_max];
+            let tiles = target.moc().rectangle_tiles(edges)?;
+            let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
+            target.moc().recorder().test_rect(self.settled(target, result), edges, w_min);
+            Ok(result)
         })
     }
 
@@ -282,7 +289,9 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        self.ask_all(|moc| moc.test_triangles(vertices, triangles, options))
+        self.with_object(|moc| moc.check_mesh(&vertices, triangles))?;
+        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
+        unsafe { self.test_triangles_unchecked(vertices.source(), triangles, options) }
     }
 
     /// As [`Self::test_triangles`].
@@ -295,8 +304,19 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        // SAFETY: the caller's contract.
-        self.ask_all(|moc| unsafe { moc.test_triangles_unchecked(vertices, triangles, options) })
+        let mesh = Mesh { vertices, triangles, options };
+        self.with_buffer(|target| {
+            // SAFETY: the caller's contract.
+            let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(&mesh) })?;
+            // SAFETY: as above.
+            unsafe { target.moc().recorder().test_triangles(self.settled(target, result), &mesh) };
+            Ok(result)
+        })
+    }
+
+    /// An answer that a recording can be held to: none while something is being drawn.
+    fn settled(&self, target: &Target, result: CullingResult) -> Option<CullingResult> {
+        (target.moc().recorder().is_on() && self.crew.is_done()).then_some(result)
     }
 
     /// Looks at the object itself, which has a buffer.

@@ -1,0 +1,226 @@
+// The frame recorder through its C++ classes: a frame that is recorded is loaded and played again with the same
+// answers and pixels, and so are calls that were recorded by hand. Files that are cut, broken or missing are refused.
+#define MOC_RECORDER_ENABLE 1
+#define MOC_RECORDER_ENABLE_PLAYBACK 1
+#include "FrameRecorder.h"
+
+#include "CullingThreadpool.h"
+#include "check.h"
+
+#include <string>
+
+namespace
+{
+
+typedef MaskedOcclusionCulling MOC;
+
+const char *const FILE_NAME = "capi-tests-recorder.mocrec";
+
+// x' = x, y' = y, w' = z.
+const float Z_TO_W[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0};
+
+std::vector<float> Depths(const MOC &moc)
+{
+    unsigned int width, height;
+    moc.GetResolution(width, height);
+    std::vector<float> depths(width * height);
+    moc.ComputePixelDepthBuffer(depths.data(), false);
+    return depths;
+}
+
+// Plays a recording as engines do; how many answers differ from those recorded.
+int Play(MOC &moc, const FrameRecording &recording)
+{
+    int differ = 0;
+    moc.SetResolution(recording.mResolutionWidth, recording.mResolutionHeight);
+    moc.SetNearClipPlane(recording.mNearClipPlane);
+    for (size_t i = 0; i < recording.mPlaybackOrder.size(); ++i)
+    {
+        const int index = recording.mPlaybackOrder[i].second;
+        int recorded = -1, answer = -1;
+        switch (recording.mPlaybackOrder[i].first)
+        {
+        case 1:
+        {
+            const FrameRecording::RectEntry &rect = recording.mRectEntries[index];
+            recorded = rect.mCullingResult;
+            answer = moc.TestRect(rect.mXMin, rect.mYMin, rect.mXMax, rect.mYMax, rect.mWMin);
+            break;
+        }
+        case 0:
+        case 2:
+        {
+            const FrameRecording::TrianglesEntry &mesh = recording.mTriangleEntries[index];
+            const float *matrix = mesh.mHasModelToClipMatrix ? mesh.mModelToClipMatrix : nullptr;
+            const int triangles = static_cast<int>(mesh.mTriangles.size() / 3);
+            CHECK(!mesh.mHasScissorRect);
+            recorded = mesh.mCullingResult;
+            answer = recording.mPlaybackOrder[i].first == 0
+                         ? moc.RenderTriangles(mesh.mVertices.data(), mesh.mTriangles.data(), triangles, matrix,
+                                               mesh.mbfWinding, mesh.mClipPlaneMask, mesh.mVertexLayout)
+                         : moc.TestTriangles(mesh.mVertices.data(), mesh.mTriangles.data(), triangles, matrix,
+                                             mesh.mbfWinding, mesh.mClipPlaneMask, mesh.mVertexLayout);
+            break;
+        }
+        case 3:
+            CHECK_EQ(index, -1);
+            moc.ClearBuffer();
+            break;
+        default:
+            CHECK(!"a kind of call");
+        }
+        differ += recorded != -1 && recorded != answer;
+    }
+    return differ;
+}
+
+void RecordAndPlay()
+{
+    MOC *moc = MOC::Create();
+    CHECK(!moc->RecorderStart(FILE_NAME)); // no buffer
+    moc->RecorderStop();
+    moc->SetResolution(200, 120);
+    CHECK(!moc->RecorderStart("no/such/folder/frame.mocrec"));
+    CHECK(!moc->RecorderStart(nullptr));
+    CHECK(moc->RecorderStart(FILE_NAME));
+    CHECK(!moc->RecorderStart(FILE_NAME));
+    // Before the first call the file's header waits for what is set.
+    moc->SetNearClipPlane(0.25f);
+    moc->ClearBuffer();
+    float vertices[16];
+    const float positions[12] = {-0.4f, -0.4f, 5, 0.4f, -0.4f, 5, 0.4f, 0.4f, 5, -0.4f, 0.4f, 5};
+    quad_at(vertices, -0.5f, -0.5f, 0.5f, 0.5f, 4.0f);
+    CHECK_EQ(moc->RenderTriangles(vertices, QUAD, 2, nullptr, MOC::BACKFACE_NONE), MOC::VISIBLE);
+    CHECK_EQ(moc->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 5.0f), MOC::OCCLUDED);
+    CHECK_EQ(moc->TestRect(2.1f, -0.1f, 2.2f, 0.1f, 5.0f), MOC::VIEW_CULLED);
+    CHECK_EQ(moc->TestTriangles(positions, QUAD, 2, Z_TO_W, MOC::BACKFACE_CW, MOC::CLIP_PLANE_NEAR,
+                                MOC::VertexLayout(12, 4, 8)),
+             MOC::OCCLUDED);
+    // Refused, and so not recorded.
+    moc->RenderTriangles(vertices, QUAD, -1);
+    moc->RecordRenderTriangles(positions, QUAD, 1, Z_TO_W, MOC::CLIP_PLANE_SIDES, MOC::BACKFACE_CCW,
+                               MOC::VertexLayout(12, 4, 8));
+    moc->RecordRenderTriangles(vertices, QUAD, 2);
+    moc->RecorderStop();
+    moc->ClearBuffer();
+
+    FrameRecording recording;
+    CHECK(FrameRecording::Load(FILE_NAME, recording));
+    const char kinds[] = {3, 0, 1, 1, 2, 0, 0};
+    CHECK_EQ(recording.mPlaybackOrder.size(), sizeof(kinds));
+    for (size_t i = 0; i < recording.mPlaybackOrder.size() && i < sizeof(kinds); ++i)
+        CHECK_EQ(recording.mPlaybackOrder[i].first, kinds[i]);
+    CHECK_EQ(recording.mResolutionWidth, 200);
+    CHECK_EQ(recording.mResolutionHeight, 120);
+    CHECK(recording.mNearClipPlane == 0.25f);
+    CHECK_EQ(recording.mTriangleEntries[0].mVertexLayout.mOffsetW, 12);
+    CHECK_EQ(recording.mTriangleEntries[1].mClipPlaneMask, MOC::CLIP_PLANE_NEAR);
+    CHECK_EQ(recording.mTriangleEntries[2].mCullingResult, -1);
+    CHECK_EQ(recording.mTriangleEntries[2].mbfWinding, MOC::BACKFACE_CCW);
+    CHECK_EQ(recording.mTriangleEntries[2].mClipPlaneMask, MOC::CLIP_PLANE_SIDES);
+    // Of a quad's vertices one triangle needs three.
+    CHECK_EQ(recording.mTriangleEntries[2].mVertices.size(), 9);
+
+    MOC *again = MOC::Create();
+    CHECK_EQ(Play(*again, recording), 0);
+    CHECK_EQ(again->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 5.0f), MOC::OCCLUDED);
+
+    // The same of the copy that playing it makes.
+    CHECK(again->RecorderStart(FILE_NAME));
+    CHECK_EQ(Play(*again, recording), 0);
+    again->RecorderStop();
+    FrameRecording copy;
+    CHECK(FrameRecording::Load(FILE_NAME, copy));
+    CHECK_EQ(copy.mPlaybackOrder.size(), recording.mPlaybackOrder.size() + 1); // SetResolution clears
+    CHECK(copy.mTriangleEntries[2].mVertices == recording.mTriangleEntries[2].mVertices);
+    CHECK_EQ(Play(*moc, copy), 0);
+    CHECK(Depths(*moc) == Depths(*again));
+    MOC::Destroy(again);
+    MOC::Destroy(moc);
+}
+
+void RecordAPool()
+{
+    std::vector<float> vertices(12 * 300);
+    std::vector<unsigned int> indices(3 * 300);
+    random_triangles(vertices.data(), indices.data(), 300, 5);
+    MOC *moc = MOC::Create(), *again = MOC::Create();
+    moc->SetResolution(300, 200);
+    CHECK(moc->RecorderStart(FILE_NAME));
+    {
+        CullingThreadpool pool(2, 3, 3);
+        pool.SetBuffer(moc);
+        pool.WakeThreads();
+        pool.ClearBuffer();
+        pool.RenderTriangles(vertices.data(), indices.data(), 300, MOC::BACKFACE_NONE);
+        pool.RenderTriangles(vertices.data(), indices.data(), 100, MOC::BACKFACE_CCW);
+        pool.Flush();
+        pool.TestRect(-0.5f, -0.5f, 0.5f, 0.5f, 50.0f);
+    }
+    moc->RecorderStop();
+    FrameRecording recording;
+    CHECK(FrameRecording::Load(FILE_NAME, recording));
+    CHECK_EQ(recording.mPlaybackOrder.size(), 4);
+    CHECK_EQ(recording.mTriangleEntries[0].mCullingResult, -1);
+    CHECK(recording.mRectEntries[0].mCullingResult != -1);
+    CHECK_EQ(Play(*again, recording), 0);
+    CHECK(Depths(*again) == Depths(*moc));
+    MOC::Destroy(again);
+    MOC::Destroy(moc);
+}
+
+void Refused()
+{
+    FrameRecording recording;
+    CHECK(FrameRecording::Load(FILE_NAME, recording));
+    CHECK(!FrameRecording::Load("no such file", recording));
+    CHECK(recording.mPlaybackOrder.empty());
+    CHECK(!FrameRecording::Load(nullptr, recording));
+
+    std::vector<unsigned char> bytes;
+    FILE *file = fopen(FILE_NAME, "rb");
+    for (int c = fgetc(file); c != EOF; c = fgetc(file))
+        bytes.push_back(static_cast<unsigned char>(c));
+    fclose(file);
+    MOC_Recording *loaded = nullptr;
+    CHECK_EQ(MOC_RecordingFromMemory(bytes.data(), bytes.size(), &loaded), MOC_STATUS_OK);
+    MOC_RecordedCall call;
+    MOC_RecordingInfo info;
+    CHECK_EQ(MOC_RecordingGetInfo(loaded, &info), MOC_STATUS_OK);
+    CHECK_EQ(MOC_RecordingGetCall(loaded, info.num_calls, &call), MOC_STATUS_INDEX_OUT_OF_RANGE);
+    CHECK_EQ(MOC_RecordingGetCall(loaded, 0, nullptr), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecordingGetInfo(nullptr, &info), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecordingDestroy(loaded), MOC_STATUS_OK);
+    CHECK_EQ(MOC_RecordingDestroy(nullptr), MOC_STATUS_OK);
+    for (size_t size = 0; size < bytes.size(); size += 1 + size / 64)
+    {
+        // Exactly as long, so that a read behind it is seen.
+        const std::vector<unsigned char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+        CHECK_EQ(MOC_RecordingFromMemory(cut.data(), size, &loaded), MOC_STATUS_INVALID_RECORDING);
+        CHECK(loaded == nullptr);
+    }
+    CHECK_EQ(MOC_RecordingFromMemory(nullptr, 4, &loaded), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecordingFromMemory(bytes.data(), bytes.size(), nullptr), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecorderStart(nullptr, FILE_NAME), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecorderStop(nullptr), MOC_STATUS_NULL_POINTER);
+    uint32_t state = 9;
+    for (int round = 0; round < 3000; ++round)
+    {
+        std::vector<unsigned char> broken(bytes);
+        for (int k = 0; k < 3; ++k)
+            broken[next_random(&state) % broken.size()] = static_cast<unsigned char>(next_random(&state));
+        if (MOC_RecordingFromMemory(broken.data(), broken.size(), &loaded) == MOC_STATUS_OK)
+            MOC_RecordingDestroy(loaded);
+    }
+}
+
+} // namespace
+
+int main()
+{
+    RecordAndPlay();
+    RecordAPool();
+    Refused();
+    remove(FILE_NAME);
+    return check_report("recorder");
+}

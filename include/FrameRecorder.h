@@ -1,0 +1,127 @@
+/*
+ * CPU occlusion culling on a masked hierarchical depth buffer: recorded frames, to be played again.
+ *
+ * MaskedOcclusionCulling::RecorderStart and RecorderStop write a file of what an object was told and what it answered;
+ * FrameRecording::Load reads it. Both are always there, whatever MOC_RECORDER_ENABLE and
+ * MOC_RECORDER_ENABLE_PLAYBACK say, and cost nothing while nothing is recorded. The file format is that of the library
+ * that this header stands in for; docs/recordings.md has it to the byte.
+ *
+ * Header-only over the C functions of masked_occlusion_culling.h. C++11. Load throws only what std::vector throws when
+ * there is no memory.
+ *
+ * SPDX-License-Identifier: Apache-2.0 OR MIT
+ */
+#pragma once
+
+#include <string.h>
+
+#include <utility>
+#include <vector>
+
+#include "MaskedOcclusionCulling.h"
+
+/** A recorded frame, or several. */
+struct FrameRecording
+{
+    /** Triangles that were drawn or tested. */
+    struct TrianglesEntry
+    {
+        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 where none is known */
+        std::vector<float> mVertices;                         /**< as mVertexLayout says */
+        std::vector<unsigned int> mTriangles;                 /**< three indices a triangle */
+        float mModelToClipMatrix[16];                         /**< zeros without one */
+        MaskedOcclusionCulling::BackfaceWinding mbfWinding;
+        MaskedOcclusionCulling::VertexLayout mVertexLayout;
+        MaskedOcclusionCulling::ClipPlanes mClipPlaneMask;
+        bool mHasModelToClipMatrix;
+        bool mHasScissorRect; /**< false: no file says so */
+    };
+
+    /** A rectangle that was tested. */
+    struct RectEntry
+    {
+        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 where none is known */
+        float mXMin;
+        float mYMin;
+        float mXMax;
+        float mYMax;
+        float mWMin;
+    };
+
+    /**
+     * The calls, in order: 0 RenderTriangles and 2 TestTriangles, with an index into mTriangleEntries; 1 TestRect, into
+     * mRectEntries; 3 ClearBuffer, with -1.
+     */
+    std::vector<std::pair<char, int> > mPlaybackOrder;
+    std::vector<TrianglesEntry> mTriangleEntries;
+    std::vector<RectEntry> mRectEntries;
+
+    float mNearClipPlane = 0.0f;
+    unsigned int mResolutionWidth = 0;
+    unsigned int mResolutionHeight = 0;
+
+    /** Forgets everything. */
+    void Reset() { *this = FrameRecording(); }
+
+    /** Reads a file. False, and an empty recording, where it cannot be read, is none, or is cut or broken. */
+    static bool Load(const char *inputFilePath, FrameRecording &outRecording)
+    {
+        outRecording.Reset();
+        MOC_Recording *recording = nullptr;
+        if (MOC_RecordingLoad(inputFilePath, &recording) != MOC_STATUS_OK)
+            return false;
+        /* Also when a vector throws. */
+        const Guard guard = {recording};
+        MOC_RecordingInfo info;
+        MOC_RecordingGetInfo(recording, &info);
+        outRecording.mNearClipPlane = info.near_clip_plane;
+        outRecording.mResolutionWidth = info.width;
+        outRecording.mResolutionHeight = info.height;
+        outRecording.mPlaybackOrder.reserve(info.num_calls);
+        for (uint32_t i = 0; i < info.num_calls; ++i)
+        {
+            MOC_RecordedCall call;
+            MOC_RecordingGetCall(recording, i, &call);
+            outRecording.Append(call);
+        }
+        return true;
+    }
+
+private:
+    struct Guard
+    {
+        MOC_Recording *recording;
+        ~Guard() { MOC_RecordingDestroy(recording); }
+    };
+
+    void Append(const MOC_RecordedCall &call)
+    {
+        const MaskedOcclusionCulling::CullingResult result =
+            static_cast<MaskedOcclusionCulling::CullingResult>(call.result);
+        int index = -1;
+        if (call.kind == MOC_RECORDED_TEST_RECT)
+        {
+            index = static_cast<int>(mRectEntries.size());
+            const RectEntry entry = {result, call.rect[0], call.rect[1], call.rect[2], call.rect[3], call.rect[4]};
+            mRectEntries.push_back(entry);
+        }
+        else if (call.kind != MOC_RECORDED_CLEAR_BUFFER)
+        {
+            index = static_cast<int>(mTriangleEntries.size());
+            mTriangleEntries.push_back(TrianglesEntry());
+            TrianglesEntry &entry = mTriangleEntries.back();
+            entry.mCullingResult = result;
+            entry.mVertices.assign(call.vertices, call.vertices + call.vertex_floats);
+            entry.mTriangles.assign(call.triangles, call.triangles + 3 * static_cast<size_t>(call.n_triangles));
+            entry.mHasModelToClipMatrix = call.model_to_clip != nullptr;
+            if (entry.mHasModelToClipMatrix)
+                memcpy(entry.mModelToClipMatrix, call.model_to_clip, sizeof(entry.mModelToClipMatrix));
+            entry.mbfWinding = static_cast<MaskedOcclusionCulling::BackfaceWinding>(call.winding);
+            entry.mVertexLayout = MaskedOcclusionCulling::VertexLayout(call.layout.stride, call.layout.offset_y,
+                                                                       call.layout.offset_zw);
+            entry.mClipPlaneMask = static_cast<MaskedOcclusionCulling::ClipPlanes>(call.clip_planes);
+            entry.mHasScissorRect = false;
+        }
+        mPlaybackOrder.push_back(std::pair<char, int>(static_cast<char>(call.kind), index));
+    }
+};

@@ -1,0 +1,321 @@
+//! Recording frames, and reading recordings.
+
+use core::ffi::{CStr, c_char};
+use std::path::Path;
+
+use super::mesh::MeshArguments;
+use super::pointers::{check_out, object, slice, write};
+use super::status::{MOC_Status, guard};
+use super::types::{self, MOC_VertexLayout};
+use crate::pipeline::Mesh;
+use crate::{DrawOptions, Error, MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
+
+/// No answer is known, in recordings.
+pub const MOC_RESULT_UNKNOWN: i32 = -1;
+
+/// What a recorded call is.
+#[repr(i32)]
+pub enum MOC_RecordedCallKind {
+    /// MOC_RenderTriangles.
+    MOC_RECORDED_RENDER_TRIANGLES = 0,
+    /// MOC_TestRect.
+    MOC_RECORDED_TEST_RECT = 1,
+    /// MOC_TestTriangles.
+    MOC_RECORDED_TEST_TRIANGLES = 2,
+    /// MOC_ClearBuffer.
+    MOC_RECORDED_CLEAR_BUFFER = 3,
+}
+
+/// A recording that was read; see MOC_RecordingLoad.
+pub struct MOC_Recording {
+    recording: Recording,
+    /// The matrices in C's form, one a call.
+    matrices: Vec<[f32; 16]>,
+}
+
+/// What a recording begins with.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_RecordingInfo {
+    /// The near plane, in clip-space w.
+    pub near_clip_plane: f32,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// How many calls were recorded.
+    pub num_calls: u32,
+}
+
+/// A recorded call. What its kind does not have is zero. The pointers stay right until the recording is destroyed.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_RecordedCall {
+    /// A MOC_RecordedCallKind.
+    pub kind: i32,
+    /// The MOC_CullingResult that was answered, or MOC_RESULT_UNKNOWN.
+    pub result: i32,
+    /// Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min.
+    pub rect: [f32; 5],
+    /// Of meshes: the arguments of the call, and the length of the vertices in floats. The matrix is null where there is none.
+    pub vertices: *const f32,
+    /// As above.
+    pub vertex_floats: usize,
+    /// As above.
+    pub triangles: *const u32,
+    /// As above.
+    pub n_triangles: i32,
+    /// As above.
+    pub model_to_clip: *const f32,
+    /// As above.
+    pub winding: i32,
+    /// As above.
+    pub clip_planes: i32,
+    /// As above.
+    pub layout: MOC_VertexLayout,
+}
+
+/// Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
+/// format. `path` is what the system calls the file, UTF-8 on Windows. Setting another near plane or resolution ends the
+/// recording, once it holds a call; merges and lists are not recorded.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed; `path` is null or ends with a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { Ok(object(moc)?.recorder_start(self::path(path)?)?) })
+}
+
+/// Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { Ok(object(moc)?.recorder_stop()?) })
+}
+
+/// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. Note the order of
+/// `clip_planes` and `winding`, which is that of the class that engines know. `result`: a MOC_CullingResult, or
+/// MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+///
+/// Errors: those of MOC_RenderTriangles; nothing is recorded.
+///
+/// # Safety
+/// That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordRenderTriangles(
+    moc: *const MaskedOcclusionCulling,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    clip_planes: i32,
+    winding: i32,
+    layout: *const MOC_VertexLayout,
+    result: i32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        moc.buffer()?;
+        let mesh = MeshArguments {
+            vertices,
+            vertex_floats: None,
+            triangles,
+            n_triangles,
+            model_to_clip,
+            winding,
+            clip_planes,
+            layout,
+        };
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { mesh.check(moc) }?;
+        let result = match result {
+            MOC_RESULT_UNKNOWN => None,
+            result => Some(types::culling_result(result)?),
+        };
+        let mesh = Mesh { vertices: mesh.vertices, triangles: mesh.triangles, options: &mesh.options };
+        // SAFETY: the caller's contract.
+        unsafe { moc.recorder().render_triangles(result, &mesh) };
+        Ok(())
+    })
+}
+
+/// Reads a recording and writes it to `out` (null there on errors).
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+///
+/// # Safety
+/// `path` is null or ends with a zero, `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut MOC_Recording) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?)?)) })
+}
+
+/// The same of a file that was read into memory, which is not needed afterwards.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
+///
+/// # Safety
+/// `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordingFromMemory(
+    bytes: *const u8,
+    size: usize,
+    out: *mut *mut MOC_Recording,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { load(out, || Ok(Recording::from_bytes(slice(bytes, size)?)?)) })
+}
+
+/// Frees a recording. Null is allowed.
+///
+/// # Safety
+/// `recording` is null or from MOC_RecordingLoad or MOC_RecordingFromMemory, and not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> MOC_Status {
+    guard(|| {
+        if !recording.is_null() {
+            // SAFETY: not null, and the caller's contract.
+            drop(unsafe { Box::from_raw(recording) });
+        }
+        Ok(())
+    })
+}
+
+/// Writes to `out` what the recording begins with.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `recording` is null or a live one, `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordingGetInfo(
+    recording: *const MOC_Recording,
+    out: *mut MOC_RecordingInfo,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: the caller's contract.
+        let recording = unsafe { &recording.as_ref().ok_or(Error::NullPointer)?.recording };
+        let info = MOC_RecordingInfo {
+            near_clip_plane: recording.near_clip_plane,
+            width: recording.resolution.0,
+            height: recording.resolution.1,
+            num_calls: recording.calls.len() as u32,
+        };
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, info) };
+        Ok(())
+    })
+}
+
+/// Writes the call number `index` to `out`.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
+///
+/// # Safety
+/// `recording` is null or a live one, `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_RecordingGetCall(
+    recording: *const MOC_Recording,
+    index: u32,
+    out: *mut MOC_RecordedCall,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: the caller's contract.
+        let MOC_Recording { recording, matrices } = unsafe { recording.as_ref() }.ok_or(Error::NullPointer)?;
+        let call = recording.calls.get(index as usize).ok_or(Error::IndexOutOfRange)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, in_c(call, &matrices[index as usize])) };
+        Ok(())
+    })
+}
+
+/// # Safety
+/// `path` is null or ends with a zero.
+unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Error> {
+    if path.is_null() {
+        return Err(Error::NullPointer);
+    }
+    // SAFETY: not null, and the caller's contract.
+    let path = unsafe { CStr::from_ptr(path) };
+    #[cfg(unix)]
+    let path = std::os::unix::ffi::OsStrExt::from_bytes(path.to_bytes());
+    #[cfg(not(unix))]
+    let path = path.to_str().map_err(|_| Error::File)?;
+    Ok(Path::new::<std::ffi::OsStr>(path))
+}
+
+/// # Safety
+/// `out` is null or can be written.
+unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recording, Error>) -> Result<(), Error> {
+    check_out(out)?;
+    // SAFETY: not null, and the caller's contract.
+    unsafe { write(out, core::ptr::null_mut()) };
+    let recording = load()?;
+    let matrices = recording.calls.iter().map(|call| match call {
+        RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh) => {
+            mesh.options.model_to_clip.map_or([0.0; 16], |matrix| matrix.to_cols_array())
+        }
+        _ => [0.0; 16],
+    });
+    let matrices = matrices.collect();
+    // SAFETY: as above.
+    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, matrices }))) };
+    Ok(())
+}
+
+fn in_c(call: &RecordedCall, matrix: &[f32; 16]) -> MOC_RecordedCall {
+    let plain = MOC_RecordedCall {
+        kind: MOC_RecordedCallKind::MOC_RECORDED_CLEAR_BUFFER as i32,
+        result: call.result().map_or(MOC_RESULT_UNKNOWN, |result| result as i32),
+        rect: [0.0; 5],
+        vertices: core::ptr::null(),
+        vertex_floats: 0,
+        triangles: core::ptr::null(),
+        n_triangles: 0,
+        model_to_clip: core::ptr::null(),
+        winding: 0,
+        clip_planes: 0,
+        layout: MOC_VertexLayout { stride: 0, offset_y: 0, offset_zw: 0 },
+    };
+    let mesh = |kind: MOC_RecordedCallKind, mesh: &RecordedMesh| {
+        let &DrawOptions { model_to_clip, winding, clip_planes } = &mesh.options;
+        MOC_RecordedCall {
+            kind: kind as i32,
+            vertices: mesh.vertices.as_ptr(),
+            vertex_floats: mesh.vertices.len(),
+            triangles: mesh.triangles.as_ptr(),
+            n_triangles: (mesh.triangles.len() / 3) as i32,
+            model_to_clip: if model_to_clip.is_some() { matrix.as_ptr() } else { core::ptr::null() },
+            winding: winding as i32,
+            clip_planes: clip_planes.bits() as i32,
+            layout: MOC_VertexLayout {
+                stride: mesh.layout.stride,
+                offset_y: mesh.layout.offset_y,
+                offset_zw: mesh.layout.offset_zw,
+            },
+            ..plain
+        }
+    };
+    match call {
+        RecordedCall::ClearBuffer => plain,
+        RecordedCall::TestRect(rect) => {
+            let [x_min, y_min, x_max, y_max] = rect.edges;
+            let kind = MOC_RecordedCallKind::MOC_RECORDED_TEST_RECT as i32;
+            MOC_RecordedCall { kind, rect: [x_min, y_min, x_max, y_max, rect.w_min], ..plain }
+        }
+        RecordedCall::RenderTriangles(m) => mesh(MOC_RecordedCallKind::MOC_RECORDED_RENDER_TRIANGLES, m),
+        RecordedCall::TestTriangles(m) => mesh(MOC_RecordedCallKind::MOC_RECORDED_TEST_TRIANGLES, m),
+    }
+}

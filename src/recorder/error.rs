@@ -1,0 +1,60 @@
+//! What can go wrong with a recording.
+
+use core::fmt;
+use std::io;
+
+/// Why a frame was not recorded or a recording not loaded.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// The object has no buffer yet.
+    NoBuffer,
+    /// The object records already.
+    Busy,
+    /// The file could not be made, written or read.
+    File(io::Error),
+    /// The file is no recording, or it is cut or broken.
+    Invalid {
+        /// The byte of the file from which on it makes no sense.
+        offset: usize,
+        /// What is wrong there.
+        why: &'static str,
+    },
+}
+
+impl fmt::Display for RecordingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoBuffer => f.write_str("no buffer: the resolution was never set"),
+            Self::Busy => f.write_str("a recording is under way already"),
+            Self::File(error) => write!(f, "the recording's file: {error}"),
+            Self::Invalid { offset, why } => write!(f, "not a recording: {why}, at byte {offset}"),
+        }
+    }
+}
+
+impl std::error::Error for RecordingError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::File(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<io::Error> for RecordingError {
+    fn from(error: io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<RecordingError> for crate::Error {
+    fn from(error: RecordingError) -> Self {
+        match error {
+            RecordingError::NoBuffer => Self::NoBuffer,
+            RecordingError::Busy => Self::Busy,
+            RecordingError::File(_) => Self::File,
+            RecordingError::Invalid { .. } => Self::InvalidRecording,
+        }
+    }
+}

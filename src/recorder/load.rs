@@ -1,0 +1,220 @@
+//! A file into calls. Every count is compared with what is left of the file before anything is made of it.
+
+use std::path::Path;
+
+use glam::Mat4;
+
+use super::error::RecordingError;
+use super::format::{CLEAR_BUFFER, END, RENDER_TRIANGLES, SIGNATURE, TEST_RECT, TEST_TRIANGLES, UNKNOWN};
+use crate::culling::MAX_SIZE;
+use crate::vertices::vertex_count;
+use crate::{BackfaceWinding, ClipPlanes, CullingResult, DrawOptions, Error, VertexLayout, Vertices};
+
+/// A recorded frame, or several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// The near plane, in clip-space w.
+    pub near_clip_plane: f32,
+    /// Width and height in pixels.
+    pub resolution: (u32, u32),
+    /// The calls, in order.
+    pub calls: Vec<RecordedCall>,
+}
+
+/// A recorded call.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordedCall {
+    /// The buffer was cleared.
+    ClearBuffer,
+    /// A rectangle was tested.
+    TestRect(RecordedRect),
+    /// Occluders were drawn.
+    RenderTriangles(RecordedMesh),
+    /// Occludees were tested.
+    TestTriangles(RecordedMesh),
+}
+
+/// A rectangle and what was answered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedRect {
+    /// The answer, where one is known.
+    pub result: Option<CullingResult>,
+    /// `x_min`, `y_min`, `x_max`, `y_max` in normalised device coordinates.
+    pub edges: [f32; 4],
+    /// The nearest point's clip-space w.
+    pub w_min: f32,
+}
+
+/// Triangles and what was answered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedMesh {
+    /// The answer, where one is known.
+    pub result: Option<CullingResult>,
+    /// The vertices, in words of which the layout says which are which.
+    pub vertices: Vec<f32>,
+    /// Where the coordinates of a vertex lie.
+    pub layout: VertexLayout,
+    /// Three a triangle, each the number of a vertex.
+    pub triangles: Vec<u32>,
+    /// Matrix, winding and planes.
+    pub options: DrawOptions,
+}
+
+impl RecordedMesh {
+    /// The vertices as a draw takes them.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLayout`]; never of what was loaded.
+    pub fn vertices(&self) -> Result<Vertices<'_>, Error> {
+        Vertices::new(&self.vertices, self.layout)
+    }
+}
+
+impl Recording {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`RecordingError::File`]; [`RecordingError::Invalid`] for one that is empty, cut, or no recording.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
+        Self::from_bytes(&std::fs::read(path)?)
+    }
+
+    /// Reads the bytes of a file. What follows the end marker does not matter.
+    ///
+    /// # Errors
+    /// [`RecordingError::Invalid`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, RecordingError> {
+        let mut reader = Reader { bytes, at: 0 };
+        if reader.word().ok() != Some(SIGNATURE) {
+            return Err(RecordingError::Invalid { offset: 0, why: "it does not begin with the signature" });
+        }
+        let near_clip_plane = reader.float()?;
+        reader.check(near_clip_plane.is_finite(), "the near plane is not a number")?;
+        let resolution = (reader.word()?, reader.word()?);
+        let size = 1..=MAX_SIZE;
+        reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "no buffer has this resolution")?;
+        let mut calls = Vec::new();
+        loop {
+            calls.push(match reader.byte()? {
+                CLEAR_BUFFER => RecordedCall::ClearBuffer,
+                TEST_RECT => RecordedCall::TestRect(reader.rect()?),
+                RENDER_TRIANGLES => RecordedCall::RenderTriangles(reader.mesh()?),
+                TEST_TRIANGLES => RecordedCall::TestTriangles(reader.mesh()?),
+                END => return Ok(Self { near_clip_plane, resolution, calls }),
+                _ => return Err(reader.invalid("no call is of this kind")),
+            });
+        }
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, len: usize) -> Result<&'a [u8], RecordingError> {
+        let rest = &self.bytes[self.at..];
+        if len > rest.len() {
+            return Err(RecordingError::Invalid { offset: self.at, why: "the file ends within a recording" });
+        }
+        self.at += len;
+        Ok(&rest[..len])
+    }
+
+    /// An error in the bytes just read.
+    fn invalid(&self, why: &'static str) -> RecordingError {
+        RecordingError::Invalid { offset: self.at, why }
+    }
+
+    fn check(&self, holds: bool, why: &'static str) -> Result<(), RecordingError> {
+        if holds { Ok(()) } else { Err(self.invalid(why)) }
+    }
+
+    fn byte(&mut self) -> Result<u8, RecordingError> {
+        Ok(self.take(1)?[0])
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], RecordingError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    fn word(&mut self) -> Result<u32, RecordingError> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    fn int(&mut self) -> Result<i32, RecordingError> {
+        Ok(i32::from_le_bytes(self.array()?))
+    }
+
+    fn float(&mut self) -> Result<f32, RecordingError> {
+        Ok(f32::from_bits(self.word()?))
+    }
+
+    /// Words that together are in the file.
+    fn words(&mut self, count: usize, each: usize, why: &'static str) -> Result<Vec<u32>, RecordingError> {
+        let len = count.checked_mul(each).and_then(|n| n.checked_mul(4)).ok_or_else(|| self.invalid(why))?;
+        let (words, _) = self.take(len)?.as_chunks::<4>();
+        Ok(words.iter().map(|&word| u32::from_le_bytes(word)).collect())
+    }
+
+    fn result(&mut self) -> Result<Option<CullingResult>, RecordingError> {
+        match self.int()? {
+            UNKNOWN => Ok(None),
+            n => CullingResult::from_number(n).map(Some).ok_or_else(|| self.invalid("no answer has this number")),
+        }
+    }
+
+    fn rect(&mut self) -> Result<RecordedRect, RecordingError> {
+        let result = self.result()?;
+        let edges = [self.float()?, self.float()?, self.float()?, self.float()?];
+        Ok(RecordedRect { result, edges, w_min: self.float()? })
+    }
+
+    fn mesh(&mut self) -> Result<RecordedMesh, RecordingError> {
+        let result = self.result()?;
+        let count = self.int()?;
+        if count == 0 {
+            let (vertices, triangles) = (Vec::new(), Vec::new());
+            return Ok(RecordedMesh {
+                result,
+                vertices,
+                layout: VertexLayout::CLIP_SPACE,
+                triangles,
+                options: DrawOptions::default(),
+            });
+        }
+        let count = usize::try_from(count).map_err(|_| self.invalid("fewer vertices than none"))?;
+        let bytes = usize::try_from(self.int()?).map_err(|_| self.invalid("a vertex has fewer bytes than none"))?;
+        self.check(bytes >= 4 && bytes.is_multiple_of(4), "a vertex is not made of words")?;
+        let vertices = self.words(count, bytes / 4, "more vertices than a file can hold")?;
+        let vertices: Vec<f32> = vertices.into_iter().map(f32::from_bits).collect();
+        let num_triangles = usize::try_from(self.int()?).map_err(|_| self.invalid("fewer triangles than none"))?;
+        let triangles = self.words(num_triangles, 3, "more triangles than a file can hold")?;
+        let model_to_clip = match self.byte()? {
+            0 => None,
+            1 => {
+                let mut matrix = [0.0; 16];
+                for number in &mut matrix {
+                    *number = self.float()?;
+                }
+                Some(Mat4::from_cols_array(&matrix))
+            }
+            _ => return Err(self.invalid("whether there is a matrix is neither yes nor no")),
+        };
+        let planes = self.int()?;
+        let clip_planes = u32::try_from(planes).ok().and_then(ClipPlanes::from_bits);
+        let clip_planes = clip_planes.ok_or_else(|| self.invalid("no clip planes have these bits"))?;
+        let winding = BackfaceWinding::from_number(self.int()?);
+        let winding = winding.ok_or_else(|| self.invalid("no winding has this number"))?;
+        let layout = VertexLayout::new(self.int()?, self.int()?, self.int()?);
+        let whole = vertex_count(size_of_val(vertices.as_slice()), layout)
+            .map_err(|_| self.invalid("a vertex layout has a negative stride or offset"))?;
+        let named = |&index: &u32| (index as usize) < whole;
+        self.check(triangles.iter().all(named), "an index names a vertex that is not there")?;
+        let options = DrawOptions { model_to_clip, winding, clip_planes };
+        Ok(RecordedMesh { result, vertices, layout, triangles, options })
+    }
+}

@@ -1,0 +1,401 @@
+//! Recordings: to the byte what the format says, played again with the answers and the depths that were there, and
+//! refused where they are cut or broken.
+
+use fastrand::Rng;
+use glam::Mat4;
+use masked_occlusion_culling::{
+    BackfaceWinding, ClipPlanes, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling,
+    RecordedCall, Recording, RecordingError, VertexLayout, Vertices,
+};
+use std::path::{Path, PathBuf};
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+}
+
+fn object(width: u32, height: u32) -> MaskedOcclusionCulling {
+    let mut moc = MaskedOcclusionCulling::default();
+    moc.set_resolution(width, height).unwrap();
+    moc
+}
+
+fn depths(moc: &MaskedOcclusionCulling) -> Vec<u32> {
+    let (width, height) = moc.resolution().unwrap();
+    let mut depth = vec![0.0; (width * height) as usize];
+    moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+    depth.iter().map(|d| d.to_bits()).collect()
+}
+
+/// Plays a recording into a new object, and counts the answers that differ from those recorded.
+fn replay(recording: &Recording) -> (MaskedOcclusionCulling, usize) {
+    let mut moc = MaskedOcclusionCulling::default();
+    let mut differ = 0;
+    let count = |call: &RecordedCall, answer: Option<CullingResult>| {
+        differ += usize::from(call.result().is_some() && call.result() != answer);
+    };
+    recording.play(&mut moc, count).unwrap();
+    (moc, differ)
+}
+
+/// Random triangles before the eye, in one of several layouts.
+struct RandomMesh {
+    data: Vec<f32>,
+    layout: VertexLayout,
+    triangles: Vec<u32>,
+    options: DrawOptions,
+}
+
+impl RandomMesh {
+    fn new(random: &mut Rng) -> Self {
+        let count = random.usize(3..40);
+        let with_matrix = random.bool();
+        let (stride, y, zw, soa) = match random.u8(0..4) {
+            0 => (16, 4, if with_matrix { 8 } else { 12 }, false),
+            1 => (12, 4, 8, false),
+            2 => (40, 20, 8, false),
+            _ => (4, 4 * count as i32, 8 * count as i32, true),
+        };
+        let words = if soa { 3 * count } else { count * stride as usize / 4 };
+        let mut data: Vec<f32> = (0..words).map(|_| f32::NAN).collect();
+        for v in 0..count {
+            let at = v * stride as usize / 4;
+            let w = 1.0 + 30.0 * random.f32();
+            let side = if with_matrix { 3.0 } else { w };
+            data[at] = side * (2.4 * random.f32() - 1.2);
+            data[at + y as usize / 4] = side * (2.4 * random.f32() - 1.2);
+            data[at + zw as usize / 4] = if with_matrix { -w } else { w };
+        }
+        // Not from the first vertex on.
+        let low = random.u32(0..count as u32 - 2);
+        let triangles = (0..3 * random.usize(0..12)).map(|_| random.u32(low..count as u32)).collect();
+        // w is -z, plus a bit.
+        let matrix = [1.0, 0.1, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.1, 0.2, 0.0, 0.1];
+        let matrix = Mat4::from_cols_array(&matrix);
+        let winding = [BackfaceWinding::None, BackfaceWinding::Clockwise, BackfaceWinding::CounterClockwise];
+        let options = DrawOptions {
+            model_to_clip: with_matrix.then_some(matrix),
+            winding: winding[random.usize(0..3)],
+            clip_planes: if random.bool() { ClipPlanes::ALL } else { ClipPlanes::NONE },
+        };
+        Self { data, layout: VertexLayout::new(stride, y, zw), triangles, options }
+    }
+
+    fn vertices(&self) -> Vertices<'_> {
+        Vertices::new(&self.data, self.layout).unwrap()
+    }
+}
+
+#[test]
+fn what_was_recorded_is_played_with_the_same_answers_and_depths() {
+    let folder = Folder::new();
+    let mut seen = [0; 4];
+    for seed in 0..200 {
+        let mut random = Rng::with_seed(seed);
+        let mut moc = object(random.u32(1..200), random.u32(1..200));
+        moc.set_near_clip_plane(random.f32()).unwrap();
+        let path = folder.file("frame.mocrec");
+        moc.recorder_start(&path).unwrap();
+        let (mut answers, mut calls) = (Vec::new(), 0);
+        for _ in 0..random.usize(0..60) {
+            calls += 1;
+            let mesh = RandomMesh::new(&mut random);
+            match random.u8(0..9) {
+                0 => moc.clear_buffer().unwrap(),
+                1..=4 => {
+                    let answer = moc.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options);
+                    answers.push(answer.unwrap());
+                }
+                5 | 6 => {
+                    let answer = moc.test_triangles(mesh.vertices(), &mesh.triangles, &mesh.options);
+                    answers.push(answer.unwrap());
+                }
+                _ => {
+                    let [x, y] = [0, 1].map(|_| 2.0 * random.f32() - 1.2);
+                    answers.push(moc.test_rect(x, y, x + 0.2, y + 0.2, 20.0 * random.f32()).unwrap());
+                }
+            }
+            // What is refused is not recorded.
+            let bad = moc.render_triangles(mesh.vertices(), &[0, 1, u32::MAX], &mesh.options);
+            assert_eq!(bad, Err(Error::IndexOutOfRange));
+        }
+        moc.recorder_stop().unwrap();
+        let recording = Recording::load(&path).unwrap();
+        assert_eq!(recording.calls.len(), calls);
+        assert_eq!(Some(recording.resolution), moc.resolution());
+        assert_eq!(recording.near_clip_plane, moc.near_clip_plane());
+        let recorded: Vec<_> = recording.calls.iter().filter_map(RecordedCall::result).collect();
+        assert_eq!(recorded, answers, "seed {seed}");
+        let (again, differ) = replay(&recording);
+        assert_eq!((differ, depths(&again)), (0, depths(&moc)), "seed {seed}");
+        recorded.iter().for_each(|&answer| seen[answer as usize] += 1);
+    }
+    assert!(seen[0] > 100 && seen[1] > 20 && seen[3] > 100, "{seen:?}");
+}
+
+/// The words of a recording, written by hand.
+fn words(bytes: &mut Vec<u8>, words: &[u32]) {
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+}
+
+/// A clear, a draw, a rectangle and a query: (bytes of the header, all bytes).
+fn by_hand() -> (usize, Vec<u8>) {
+    let mut bytes = Vec::new();
+    words(&mut bytes, &[0xA701_B600, 0.25f32.to_bits(), 64, 32]);
+    let header = bytes.len();
+    bytes.push(3);
+    // A draw of vertices 5 to 7 of 20 bytes: x, (a gap), w, y, (a gap).
+    bytes.push(0);
+    words(&mut bytes, &[0, 3, 20]);
+    for [x, y, w] in [[-1.0f32, -1.0, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0]] {
+        words(&mut bytes, &[x.to_bits(), 0, w.to_bits(), y.to_bits(), 0]);
+    }
+    words(&mut bytes, &[1, 0, 2, 1]);
+    bytes.push(0);
+    words(&mut bytes, &[0x1f, 0, 20, 12, 8]);
+    bytes.push(1);
+    words(&mut bytes, &[1]);
+    words(&mut bytes, &[-0.1f32, -0.1, 0.1, 0.1, 4.0].map(f32::to_bits));
+    // A query with a matrix, and a draw of nothing.
+    bytes.push(2);
+    words(&mut bytes, &[1, 3, 12]);
+    for position in [[-0.1f32, -0.1, 9.0], [0.1, -0.1, 9.0], [0.0, 0.1, 9.0]] {
+        words(&mut bytes, &position.map(f32::to_bits));
+    }
+    words(&mut bytes, &[1, 0, 1, 2]);
+    bytes.push(1);
+    words(&mut bytes, &Mat4::from_cols_array(&MATRIX).to_cols_array().map(f32::to_bits));
+    words(&mut bytes, &[1, 1, 12, 4, 8]);
+    bytes.push(0);
+    words(&mut bytes, &[3, 0]);
+    bytes.push(0x7f);
+    (header, bytes)
+}
+
+/// w is z.
+const MATRIX: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.];
+
+#[test]
+fn the_bytes_are_those_of_the_format() {
+    let folder = Folder::new();
+    let path = folder.file("by_hand.mocrec");
+    let mut moc = object(64, 32);
+    moc.set_near_clip_plane(0.25).unwrap();
+    moc.recorder_start(&path).unwrap();
+    moc.clear_buffer().unwrap();
+    let gap = f32::NAN;
+    let mut data = [gap; 40];
+    for (v, [x, y, w]) in [[-1.0f32, -1.0, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0]].into_iter().enumerate() {
+        data[5 * (5 + v)..][..5].copy_from_slice(&[x, gap, w, y, gap]);
+    }
+    let vertices = Vertices::new(&data, VertexLayout::new(20, 12, 8)).unwrap();
+    let both_sides = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+    moc.render_triangles(vertices, &[5, 7, 6], &both_sides).unwrap();
+    moc.test_rect(-0.1, -0.1, 0.1, 0.1, 4.0).unwrap();
+    let options = DrawOptions {
+        model_to_clip: Some(Mat4::from_cols_array(&MATRIX)),
+        clip_planes: ClipPlanes::NEAR,
+        ..DrawOptions::default()
+    };
+    let positions = [[-0.1, -0.1, 9.0], [0.1, -0.1, 9.0], [0.0, 0.1, 9.0]];
+    let answer = moc.test_triangles(Vertices::from_positions(&positions), &[0, 1, 2], &options);
+    assert_eq!(answer, Ok(CullingResult::Occluded));
+    moc.render_triangles(Vertices::from_positions(&[]), &[], &options).unwrap();
+    moc.recorder_stop().unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), by_hand().1);
+    assert_eq!(Recording::load(&path).unwrap().calls.len(), 5);
+}
+
+#[test]
+fn a_cut_file_is_refused_wherever_it_is_cut() {
+    let (_, bytes) = by_hand();
+    for len in 0..bytes.len() {
+        match Recording::from_bytes(&bytes[..len]) {
+            Err(RecordingError::Invalid { offset, .. }) => assert!(offset <= len),
+            other => panic!("cut at {len}: {other:?}"),
+        }
+    }
+    // What follows the end does not matter.
+    let longer = [bytes.as_slice(), b"more"].concat();
+    assert_eq!(Recording::from_bytes(&longer).unwrap(), Recording::from_bytes(&bytes).unwrap());
+}
+
+#[test]
+fn counts_are_compared_with_the_file_before_anything_is_made_of_them() {
+    let (header, bytes) = by_hand();
+    let vertices = header + 1 + 1 + 4;
+    for (at, value) in [
+        (vertices, i32::MAX),
+        (vertices, -1),
+        (vertices + 4, i32::MAX),
+        (vertices + 4, 0),
+        (vertices + 4, -4),
+        (vertices + 4, 18),
+        (vertices + 8 + 60, i32::MAX),
+        (vertices + 8 + 60, -1),
+    ] {
+        let mut broken = bytes.clone();
+        broken[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        let error = Recording::from_bytes(&broken).expect_err("a wrong count");
+        assert!(matches!(error, RecordingError::Invalid { .. }), "{error}");
+    }
+}
+
+#[test]
+fn what_is_broken_is_refused_or_can_be_played() {
+    let (_, bytes) = by_hand();
+    let (mut refused, mut played) = (0, 0);
+    let mut random = Rng::with_seed(7);
+    for _ in 0..20_000 {
+        let mut broken = bytes.clone();
+        for _ in 0..random.usize(1..4) {
+            let at = random.usize(0..broken.len());
+            broken[at] = if random.bool() { random.u8(..) } else { broken[at] ^ 1 << random.u8(0..8) };
+        }
+        match Recording::from_bytes(&broken) {
+            // A large buffer takes its time, and tells nothing.
+            Ok(recording) if recording.resolution.0 * recording.resolution.1 > 1 << 20 => {}
+            Ok(recording) => {
+                replay(&recording);
+                played += 1;
+            }
+            Err(RecordingError::Invalid { .. }) => refused += 1,
+            Err(other) => panic!("{other}"),
+        }
+    }
+    assert!(refused > 2000 && played > 2000, "{refused} {played}");
+}
+
+#[test]
+fn starting_and_stopping_at_any_time_is_defined() {
+    let folder = Folder::new();
+    let (a, b) = (folder.file("a.mocrec"), folder.file("b.mocrec"));
+    let without_buffer = MaskedOcclusionCulling::default();
+    assert!(matches!(without_buffer.recorder_start(&a), Err(RecordingError::NoBuffer)));
+    assert!(!a.exists());
+    without_buffer.recorder_stop().unwrap();
+
+    let mut moc = object(16, 16);
+    moc.recorder_stop().unwrap();
+    assert!(matches!(moc.recorder_start(folder.file("no/such/folder")), Err(RecordingError::File(_))));
+    moc.recorder_start(&a).unwrap();
+    assert!(matches!(moc.recorder_start(&b), Err(RecordingError::Busy)));
+    assert!(!b.exists());
+    moc.clear_buffer().unwrap();
+    // The same size clears; the same near plane is no other one.
+    moc.set_resolution(16, 16).unwrap();
+    moc.set_near_clip_plane(0.0).unwrap();
+    moc.recorder_stop().unwrap();
+    moc.clear_buffer().unwrap();
+    moc.recorder_stop().unwrap();
+    assert_eq!(Recording::load(&a).unwrap().calls, [RecordedCall::ClearBuffer, RecordedCall::ClearBuffer]);
+
+    // Until there is something in the file, its header waits for what is set.
+    moc.recorder_start(&a).unwrap();
+    moc.set_near_clip_plane(0.125).unwrap();
+    moc.set_resolution(24, 8).unwrap();
+    moc.recorder_stop().unwrap();
+    let recording = Recording::load(&a).unwrap();
+    assert_eq!((recording.near_clip_plane, recording.resolution), (0.125, (24, 8)));
+    assert_eq!(recording.calls, [RecordedCall::ClearBuffer]);
+    moc.recorder_start(&a).unwrap();
+    moc.recorder_stop().unwrap();
+    assert_eq!(Recording::load(&a).unwrap().calls, []);
+
+    let ends: [fn(&mut MaskedOcclusionCulling); 3] = [
+        |moc| moc.set_resolution(17, 16).unwrap(),
+        |moc| moc.set_near_clip_plane(0.5).unwrap(),
+        |moc| drop(core::mem::take(moc)),
+    ];
+    for end in ends {
+        moc = object(16, 16);
+        moc.recorder_start(&b).unwrap();
+        moc.clear_buffer().unwrap();
+        end(&mut moc);
+        let _ = moc.clear_buffer();
+        assert_eq!(Recording::load(&b).unwrap().calls, [RecordedCall::ClearBuffer]);
+        moc.recorder_stop().unwrap();
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_read_or_is_none_says_so() {
+    let folder = Folder::new();
+    assert!(matches!(Recording::load(folder.file("none")), Err(RecordingError::File(_))));
+    assert!(matches!(Recording::load(folder.0.path()), Err(RecordingError::File(_))));
+    for text in ["", "mocrec", "a text that is longer than the header of a recording is"] {
+        let path = folder.file("text");
+        std::fs::write(&path, text).unwrap();
+        let error = Recording::load(&path).expect_err("no recording");
+        assert_eq!(error.to_string(), "not a recording: it does not begin with the signature, at byte 0");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_when_the_recording_ends() {
+    let mut moc = object(16, 16);
+    moc.recorder_start("/dev/full").unwrap();
+    let mut random = Rng::with_seed(1);
+    for _ in 0..300 {
+        let mesh = RandomMesh::new(&mut random);
+        moc.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options).unwrap();
+    }
+    assert!(matches!(moc.recorder_stop(), Err(RecordingError::File(_))));
+    // It was told; there is nothing more to stop.
+    moc.recorder_stop().unwrap();
+}
+
+#[test]
+fn what_a_pool_is_told_is_recorded_in_order() {
+    let folder = Folder::new();
+    for seed in 0..30 {
+        let mut random = Rng::with_seed(seed);
+        let path = folder.file("pool.mocrec");
+        let moc = object(200, 150);
+        moc.recorder_start(&path).unwrap();
+        let pool = CullingThreadpool::new(random.u32(0..3), 4, 4, 8).unwrap();
+        pool.set_buffer(moc);
+        pool.wake_threads();
+        let meshes: Vec<_> = (0..20).map(|_| RandomMesh::new(&mut random)).collect();
+        pool.clear_buffer().unwrap();
+        for (k, mesh) in meshes.iter().enumerate() {
+            // SAFETY: the meshes live until the flush.
+            unsafe { pool.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options) }.unwrap();
+            if k % 5 == 4 {
+                // In the middle of drawing an answer may be another one than later, and is not recorded as one.
+                pool.test_rect(-0.5, -0.5, 0.0, 0.0, 9.0).unwrap();
+            }
+        }
+        pool.flush();
+        pool.test_triangles(meshes[0].vertices(), &meshes[0].triangles, &meshes[0].options).unwrap();
+        let moc = pool.take_buffer().unwrap();
+        moc.recorder_stop().unwrap();
+        let recording = Recording::load(&path).unwrap();
+        assert_eq!(recording.calls.len(), 1 + 20 + 4 + 1);
+        assert!(recording.calls[25].result().is_some());
+        let (again, differ) = replay(&recording);
+        assert_eq!((differ, depths(&again)), (0, depths(&moc)), "seed {seed}");
+    }
+}
+
+/// Frames that the library recorded that this one stands in for, where they are at hand.
+#[test]
+fn recordings_of_others_play_with_their_answers() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for path in
+        entries.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "mocrec"))
+    {
+        let recording = Recording::load(&path).unwrap();
+        let (_, differ) = replay(&recording);
+        assert_eq!(differ, 0, "{} of {} calls", path.display(), recording.calls.len());
+    }
+}
