@@ -178,13 +178,14 @@ static double Median(std::vector<double> values) {
 
 int main(int argc, char **argv) {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: demo SCENE RESULT [highest instruction set]\n");
+        std::fprintf(stderr, "usage: demo SCENE RESULT [highest instruction set, or - [recording]]\n");
         return 2;
     }
     const Scene scene = LoadScene(argv[1]);
     const unsigned width = scene.header.width, height = scene.header.height;
 
-    Moc *moc = argc > 3 ? Moc::Create(Moc::Implementation(std::atoi(argv[3]))) : Moc::Create();
+    const bool capped = argc > 3 && std::strcmp(argv[3], "-") != 0;
+    Moc *moc = capped ? Moc::Create(Moc::Implementation(std::atoi(argv[3]))) : Moc::Create();
     moc->SetResolution(width, height);
     moc->SetNearClipPlane(scene.header.nearPlane);
 
@@ -213,6 +214,13 @@ int main(int argc, char **argv) {
         sum += Median(times[s]);
     }
     std::printf("  %-32s %10.3f\n\n", "all", sum);
+
+    // One frame more, with all its calls and answers in a file.
+    if (argc > 4) {
+        if (!moc->RecorderStart(argv[4])) Fail("cannot record into", argv[4]);
+        CullFrame(scene, moc, frame);
+        moc->RecorderStop();
+    }
 
     std::vector<float> depth(size_t(width) * height);
     moc->ComputePixelDepthBuffer(depth.data(), false);

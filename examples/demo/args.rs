@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use glam::Vec3;
@@ -11,7 +11,8 @@ use crate::options::{Isa, Rule};
 #[derive(Debug, Parser)]
 #[command(name = "demo")]
 pub struct Args {
-    /// A .obj, .gltf or .glb file; without one a small town is generated
+    /// A .obj, .gltf or .glb file, or a recorded frame (.mocrec), of which camera and size are known; without one a small
+    /// town is generated
     pub scene: Option<PathBuf>,
 
     /// Where the camera is, in the file's units (default: chosen for the scene)
@@ -50,9 +51,21 @@ pub struct Args {
     #[arg(long, value_name = "TRIANGLES", value_parser = count, allow_negative_numbers = true)]
     pub split: Option<u32>,
 
+    /// Records a frame into this file, to be played by `cargo run --release --example replay FILE`
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+
     /// Where the pictures are written
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
+}
+
+impl Args {
+    /// The recording that is to be played, if it is one.
+    pub fn recording(&self) -> Option<&Path> {
+        let is_recording = |path: &&Path| path.extension().is_some_and(|extension| extension == "mocrec");
+        self.scene.as_deref().filter(is_recording)
+    }
 }
 
 impl Rule {

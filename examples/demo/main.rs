@@ -6,6 +6,8 @@
 mod args;
 mod camera;
 mod compiler;
+#[path = "../shared/depth_picture.rs"]
+mod depth_picture;
 mod exchange;
 mod gltf_buffers;
 mod image;
@@ -15,6 +17,8 @@ mod native;
 #[path = "../shared/options.rs"]
 mod options;
 mod picture;
+#[path = "../replay/play.rs"]
+mod play;
 mod raster;
 mod scene;
 mod shade;
@@ -33,9 +37,13 @@ use indicatif::ProgressBar;
 
 use args::Args;
 use camera::Camera;
+use depth_picture::depth_picture;
 use exchange::Fate;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// Of a recording.
+const REPEATS: u32 = 101;
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -48,6 +56,10 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<()> {
+    if let Some(file) = args.recording() {
+        let (rule, isa, picture) = (args.rule, args.isa, args.out.join("depth.png"));
+        return play::run(&play::Options { file, rule, isa, repeats: REPEATS, picture });
+    }
     let scene = match &args.scene {
         Some(path) => {
             let scene = load::load(path)?;
@@ -83,7 +95,8 @@ fn run(args: &Args) -> Result<()> {
     })?;
     let mut command = Command::new(program);
     command.arg(&scene_file).arg(&result_file);
-    command.args(args.isa.map(|isa| (isa as i32).to_string()));
+    command.arg(args.isa.map_or("-".into(), |isa| (isa as i32).to_string()));
+    command.args(&args.record);
     say(native::run(&mut command)?);
     let outcome = exchange::read_outcome(&result_file, scene.objects.len(), args.size)?;
 
@@ -97,7 +110,7 @@ fn run(args: &Args) -> Result<()> {
     let (depth_file, culled_file) = (args.out.join("depth.png"), args.out.join("culled.png"));
     step("drawing the pictures", || {
         let (width, height) = (args.size.0 as usize, args.size.1 as usize);
-        picture::depth(&outcome, args.size, width, height).save(&depth_file)?;
+        depth_picture(&outcome.depth, args.size, width, height).save(&depth_file)?;
         picture::compose(&scene, &camera, &outcome, args.size).save(&culled_file)
     })?;
     say(format_args!("pictures: {} and {}\n", depth_file.display(), culled_file.display()));

@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec2, Vec3};
 
 use crate::camera::{Camera, box_corners};
+use crate::depth_picture::depth_picture;
 use crate::exchange::{Fate, Outcome};
 use crate::image::Image;
 use crate::raster::{NOTHING, ZBuffer, orthographic};
@@ -41,7 +42,7 @@ pub fn compose(scene: &Scene, camera: &Camera, outcome: &Outcome, size: (u32, u3
     panel(view.halved(), 0, 0, &[(&format!("drawn: {drawn} objects"), WHITE)]);
     panel(behind.halved(), 1, 0, &[("behind what is drawn: ", WHITE), (&format!("{culled} culled"), CULLED)]);
     let buffer_size = format!("occlusion buffer, {} x {}", size.0, size.1);
-    panel(depth(outcome, size, fitted.0, fitted.1), 0, 1, &[(&buffer_size, WHITE)]);
+    panel(depth_picture(&outcome.depth, size, fitted.0, fitted.1), 0, 1, &[(&buffer_size, WHITE)]);
     panel(
         from_above(scene, camera, outcome, &light),
         1,
@@ -60,41 +61,6 @@ pub fn compose(scene: &Scene, camera: &Camera, outcome: &Outcome, size: (u32, u3
         }
     }
     picture
-}
-
-/// The depth of every pixel: near is bright, and nothing is dark. The scale is logarithmic.
-pub fn depth(outcome: &Outcome, (from_w, from_h): (u32, u32), width: usize, height: usize) -> Image {
-    let mut known: Vec<f32> = outcome.depth.iter().copied().filter(|d| *d > 0.0).collect();
-    known.sort_unstable_by(f32::total_cmp);
-    let quantile = |q: f32| known.get((known.len() as f32 * q) as usize).map_or(1.0, |d| d.ln());
-    let (far, near) = (quantile(0.002), quantile(0.99));
-    let stops = [0x10121f, 0x3b2a63, 0x8c3a70, 0xdc6a55, 0xf9b66a, 0xfcf3c4]
-        .map(|c: u32| Vec3::new((c >> 16) as f32, (c >> 8 & 255) as f32, (c & 255) as f32) / 255.0);
-    let colour = |d: f32| {
-        if d <= 0.0 {
-            return Vec3::new(0.02, 0.025, 0.04);
-        }
-        let t = (0.08 + 0.92 * (d.ln() - far) / (near - far).max(1e-6)).clamp(0.0, 1.0) * (stops.len() - 1) as f32;
-        let i = (t as usize).min(stops.len() - 2);
-        stops[i].lerp(stops[i + 1], t - i as f32)
-    };
-    let mut image = Image::new(width, height, Vec3::ZERO);
-    for (i, pixel) in image.pixels.iter_mut().enumerate() {
-        // The mean of the buffer's pixels that this one covers, one at least.
-        let range = |at: usize, to: usize, from: u32| {
-            let lo = at * from as usize / to;
-            lo..((at + 1) * from as usize / to).max(lo + 1)
-        };
-        let (mut sum, mut n) = (Vec3::ZERO, 0.0);
-        for y in range(i / width, height, from_h) {
-            for x in range(i % width, width, from_w) {
-                sum += colour(outcome.depth[y * from_w as usize + x]);
-                n += 1.0;
-            }
-        }
-        *pixel = sum / n;
-    }
-    image
 }
 
 /// The largest size in a panel that has the shape of the occlusion buffer.
