@@ -62,7 +62,7 @@ static int covered(const float *depth, int first, int last)
 static void versions(void)
 {
     int32_t status;
-    CHECK_EQ(MOC_AbiVersion(), MOC_ABI_VERSION);
+    CHECK_EQ(MOC_GetAbiVersion(), MOC_ABI_VERSION);
     for (status = -2; status < 20; status++) {
         const char *text = MOC_StatusText(status);
         CHECK(text != NULL && text[0] != '\0');

@@ -12,7 +12,7 @@ static void check(int32_t status, const char *what) {
 }
 
 int main(void) {
-    if (MOC_AbiVersion() != MOC_ABI_VERSION) {
+    if (MOC_GetAbiVersion() != MOC_ABI_VERSION) {
         fprintf(stderr, "the header and the library do not match\n");
         return 1;
     }

@@ -454,7 +454,7 @@ private:
     static MaskedOcclusionCulling *CreateWith(unsigned int switches, Implementation implementation,
                                               pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
     {
-        const unsigned int library = MOC_AbiVersion(), header = MOC_ABI_VERSION;
+        const unsigned int library = MOC_GetAbiVersion(), header = MOC_ABI_VERSION;
         const bool stable = header >= 1000;
         if (stable ? library / 1000 != header / 1000 || library < header : library != header)
             return nullptr;

@@ -30,7 +30,7 @@ typedef struct MaskedOcclusionCulling MaskedOcclusionCulling;
 /**
  * The version of this interface: 1000 * major + minor of the library's version.
  *
- * Compare it with MOC_AbiVersion() to see that header and library belong together: before version
+ * Compare it with MOC_GetAbiVersion() to see that header and library belong together: before version
  * 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
  * header's.
  */
@@ -626,7 +626,7 @@ extern "C" {
 /**
  * The MOC_ABI_VERSION that the library was built with.
  */
-uint32_t MOC_AbiVersion(void);
+uint32_t MOC_GetAbiVersion(void);
 
 /**
  * A status in English, for logs. Never null; the text lives as long as the library is loaded.
@@ -1256,7 +1256,7 @@ MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
 /**
  * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
  * format. `path` is what the system calls the file, UTF-8 on Windows. Setting another near plane or resolution ends the
- * recording; merges and lists are not recorded.
+ * recording, once it holds a call; merges and lists are not recorded.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
  *

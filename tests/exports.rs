@@ -4,22 +4,13 @@
 mod native;
 
 use std::collections::BTreeSet;
-use std::process::Command;
 
 #[test]
 fn the_shared_library_exports_the_header_and_nothing_else() {
-    let output = Command::new("nm")
-        .args(["-D", "--defined-only", "--extern-only", "--format=posix"])
-        .arg(native::shared_library())
-        .output()
-        .expect("nm (binutils) reads the symbols");
-    assert!(output.status.success(), "nm: {}", String::from_utf8_lossy(&output.stderr));
-    let symbols = String::from_utf8(output.stdout).expect("names are text");
-    let exported: BTreeSet<&str> = symbols.lines().filter_map(|line| line.split_whitespace().next()).collect();
-
+    let exported = native::exported_symbols();
     let header =
         std::fs::read_to_string(native::root().join("include/masked_occlusion_culling.h")).expect("the header");
-    let declared: BTreeSet<&str> = header
+    let declared: BTreeSet<String> = header
         .lines()
         .filter(|line| {
             line.starts_with("MOC_Status MOC_")
@@ -27,6 +18,7 @@ fn the_shared_library_exports_the_header_and_nothing_else() {
                 || line.starts_with("const char *MOC_")
         })
         .filter_map(|line| line.split('(').next()?.rsplit([' ', '*']).next())
+        .map(String::from)
         .collect();
     assert!(declared.len() > 20, "found only {declared:?} in the header");
     assert_eq!(exported, declared);

@@ -8,7 +8,7 @@ use crate::{CullingResult, Error};
 
 /// The version of this interface: 1000 * major + minor of the library's version.
 ///
-/// Compare it with MOC_AbiVersion() to see that header and library belong together: before version
+/// Compare it with MOC_GetAbiVersion() to see that header and library belong together: before version
 /// 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
 /// header's.
 pub const MOC_ABI_VERSION: u32 = 1;
@@ -94,7 +94,7 @@ const TEXTS: [&CStr; 15] = [
 
 /// The MOC_ABI_VERSION that the library was built with.
 #[unsafe(no_mangle)]
-pub extern "C" fn MOC_AbiVersion() -> u32 {
+pub extern "C" fn MOC_GetAbiVersion() -> u32 {
     MOC_ABI_VERSION
 }
 

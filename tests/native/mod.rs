@@ -44,3 +44,15 @@ fn library(link: Link) -> Result<PathBuf, String> {
         .find(|path| path.is_file())
         .ok_or_else(|| format!("{name} is not beside {}: was the library built for this target?", executable.display()))
 }
+
+/// The functions that the shared library exports.
+pub fn exported_symbols() -> std::collections::BTreeSet<String> {
+    let output = std::process::Command::new("nm")
+        .args(["-D", "--defined-only", "--extern-only", "--format=posix"])
+        .arg(shared_library())
+        .output()
+        .expect("nm (binutils) reads the symbols");
+    assert!(output.status.success(), "nm: {}", String::from_utf8_lossy(&output.stderr));
+    let symbols = String::from_utf8(output.stdout).expect("names are text");
+    symbols.lines().filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
+}
