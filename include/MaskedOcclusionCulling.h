@@ -115,13 +115,17 @@ public:
     /** An instruction set. All of them give the same bits. */
     enum Implementation : int
     {
-        SCALAR = MOC_SCALAR,
         SSE2   = MOC_SSE2,
         SSE41  = MOC_SSE41,
         AVX2   = MOC_AVX2,
-        AVX512 = MOC_AVX512,
-        NEON   = MOC_NEON
+        AVX512 = MOC_AVX512
     };
+    /*
+     * Constants, not enumerators: a program that was written before there were these names all four in a switch, and
+     * would be warned of two more. A switch that has these needs a variable of type int.
+     */
+    static constexpr Implementation SCALAR = static_cast<Implementation>(MOC_SCALAR);
+    static constexpr Implementation NEON   = static_cast<Implementation>(MOC_NEON);
 
     /** Which triangles face away, by their winding in normalised device coordinates (y up). */
     enum BackfaceWinding : int
