@@ -21,6 +21,7 @@ bool MaskedOcclusionCulling::RecorderStart(const char *) const
 
 void MaskedOcclusionCulling::RecorderStop() const
 {
+    CHECK(mRecorder != nullptr); // without one it would crash
     mRecorder = nullptr;
     stops++;
 }
@@ -56,7 +57,12 @@ int main()
         CHECK_EQ(recorder.mRects, recording != 0 ? 2 : 0);
         CHECK_EQ(recorder.mMeshes, recording != 0);
     }
+    MOC::Destroy(moc);
     CHECK_EQ(stops, 1);
+
+    // What is destroyed while it records is stopped first.
+    moc = MOC::Create();
+    moc->RecorderStart("somewhere");
     MOC::Destroy(moc);
     CHECK_EQ(stops, 2);
     return check_report("abstract_recorder");

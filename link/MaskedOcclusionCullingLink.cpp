@@ -80,7 +80,9 @@ public:
     ~Linked() override
     {
 #if MOC_RECORDER_ENABLE
-        RecorderStop();
+        // It must not be called where nothing is recorded.
+        if (mRecorder != nullptr)
+            RecorderStop();
 #endif
         MOC_Destroy(mObject);
     }
