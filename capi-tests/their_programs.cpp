@@ -59,8 +59,8 @@ const char *Name(MOC::BackfaceWinding winding)
 
 void Enumerations(MOC *moc)
 {
-    // Those that were added are of the type, and are named where a default is.
-    const MOC::Implementation scalar = MOC::SCALAR, neon = MOC::NEON;
+    // Those that were added are of the type, and can be referred to, before C++17 too.
+    const MOC::Implementation &scalar = MOC::SCALAR, &neon = MOC::NEON;
     CHECK_EQ(scalar, MOC_SCALAR);
     CHECK_EQ(neon, MOC_NEON);
     const MOC::Implementation is = moc->GetImplementation();
