@@ -29,6 +29,12 @@
  */
 #pragma once
 
+// Not used here, but the header that this one stands in for has them, and programs rely on it.
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
 #include "MaskedOcclusionCulling.h"
 
 class CullingThreadpool

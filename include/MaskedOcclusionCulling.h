@@ -102,25 +102,40 @@
 #define MOC_DETAIL_SWITCHES \
     (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP | MOC_DETAIL_STATS)
 
+/*
+ * The instruction sets, as members of the class below. SCALAR and NEON are constants, not enumerators: a program that
+ * was written before there were these names all four in a switch, and would be warned of two more. A switch that has
+ * them needs a variable of type int. The template is for their definitions, which C++11 wants in one place.
+ */
+template <class Unused> struct MOC_DetailImplementations
+{
+    /** An instruction set. All of them give the same bits. */
+    enum Implementation : int
+    {
+        SSE2   = MOC_SSE2,
+        SSE41  = MOC_SSE41,
+        AVX2   = MOC_AVX2,
+        AVX512 = MOC_AVX512
+    };
+    static constexpr Implementation SCALAR = static_cast<Implementation>(MOC_SCALAR);
+    static constexpr Implementation NEON   = static_cast<Implementation>(MOC_NEON);
+};
+
+#if __cplusplus < 201703L
+template <class Unused>
+constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::SCALAR;
+template <class Unused>
+constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::NEON;
+#endif
+
 /** A masked hierarchical depth buffer to draw occluders into and to test occludees against. */
-class MaskedOcclusionCulling
+class MaskedOcclusionCulling : public MOC_DetailImplementations<void>
 {
 public:
     /** Allocates `size` bytes at a multiple of `alignment`; null when there is no memory. Must not throw. */
     typedef void *(*pfnAlignedAlloc)(size_t alignment, size_t size);
     /** Frees what pfnAlignedAlloc gave. Must not throw. */
     typedef void (*pfnAlignedFree)(void *ptr);
-
-    /** An instruction set. All of them give the same bits. */
-    enum Implementation : int
-    {
-        SCALAR = MOC_SCALAR,
-        SSE2   = MOC_SSE2,
-        SSE41  = MOC_SSE41,
-        AVX2   = MOC_AVX2,
-        AVX512 = MOC_AVX512,
-        NEON   = MOC_NEON
-    };
 
     /** Which triangles face away, by their winding in normalised device coordinates (y up). */
     enum BackfaceWinding : int

@@ -32,6 +32,7 @@ const SWITCHES: Program = Program {
     cpp: true,
 };
 const STATISTICS: Program = Program { name: "statistics", sources: &["statistics.cpp"], cpp: true };
+const THEIR_PROGRAMS: Program = Program { name: "their_programs", sources: &["their_programs.cpp"], cpp: true };
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
 const THREAD_POOL: Program = Program { name: "thread_pool", sources: &["thread_pool.cpp"], cpp: true };
 const RECORDER: Program = Program { name: "recorder", sources: &["recorder.cpp"], cpp: true };
@@ -130,6 +131,8 @@ programs! {
     statistics_static: STATISTICS, Library::Static;
     switches_shared: SWITCHES, Library::Shared;
     switches_static: SWITCHES, Library::Static;
+    their_programs_shared: THEIR_PROGRAMS, Library::Shared;
+    their_programs_static: THEIR_PROGRAMS, Library::Static;
     thread_pool_shared: THREAD_POOL, Library::Shared;
     thread_pool_static: THREAD_POOL, Library::Static;
     thread_pool_c_shared: THREAD_POOL_C, Library::Shared;

@@ -1,0 +1,19 @@
+// The recorder's calls beside the class of this folder; abstract_recorder.cpp counts them.
+#pragma once
+
+#include "MaskedOcclusionCulling.h"
+
+class FrameRecorder
+{
+public:
+    int mClears = 0, mDraws = 0, mRects = 0, mMeshes = 0;
+
+    void RecordClearBuffer() { mClears++; }
+    void RecordTestRect(MaskedOcclusionCulling::CullingResult, float, float, float, float, float) { mRects++; }
+    void RecordTestTriangles(MaskedOcclusionCulling::CullingResult, const float *, const unsigned int *, int,
+                             const float *, MaskedOcclusionCulling::ClipPlanes, MaskedOcclusionCulling::BackfaceWinding,
+                             const MaskedOcclusionCulling::VertexLayout &)
+    {
+        mMeshes++;
+    }
+};
