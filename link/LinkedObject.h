@@ -20,7 +20,7 @@ MOC_LinkedObject *ObjectOf(const MaskedOcclusionCulling *moc);
 /** Whether the library that was linked is of the version of the C header. */
 inline bool LibraryFits()
 {
-    const unsigned int library = MOC_AbiVersion(), header = MOC_ABI_VERSION;
+    const unsigned int library = MOC_GetAbiVersion(), header = MOC_ABI_VERSION;
     const bool stable = header >= 1000;
     return stable ? library / 1000 == header / 1000 && library >= header : library == header;
 }
