@@ -47,7 +47,9 @@ impl Driver<'_> {
     }
 
     pub(crate) fn render(&mut self, which: usize) -> Check {
-        let before = if self.rng.u8(..8) == 0 { Some(self.check_depth(which)?) } else { None };
+        // A pool would be flushed each time.
+        let looks = self.families[which].pool.is_none() && self.rng.u8(..8) == 0;
+        let before = if looks { Some(self.check_depth(which)?) } else { None };
         let mesh = self.mesh(which)?;
         let family = &mut self.families[which];
         let through = family.through();

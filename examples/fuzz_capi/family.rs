@@ -41,7 +41,7 @@ pub struct Family {
 }
 
 impl Family {
-    pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool) -> Check<Self> {
+    pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool, statistics: bool) -> Check<Self> {
         let mut family = Self {
             members: Vec::new(),
             size: None,
@@ -57,8 +57,15 @@ impl Family {
         for implementation in [-1, 0, 1, 2, 3, 16] {
             let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
                 if own_allocator { (Some(memory::alloc), Some(memory::free)) } else { (None, None) };
-            let settings =
-                MOC_Settings { implementation, update_rule, y_axis, precise_coverage: 1, statistics: 1, alloc, free };
+            let settings = MOC_Settings {
+                implementation,
+                update_rule,
+                y_axis,
+                precise_coverage: 1,
+                statistics: statistics.into(),
+                alloc,
+                free,
+            };
             let (mut moc, mut used) = (null_mut(), 0);
             // SAFETY: the settings and the place for the object are valid, the callbacks are an allocator.
             let status = unsafe { MOC_Create(&settings, &mut moc) } as i32;

@@ -93,7 +93,7 @@ impl Driver<'_> {
             return Ok(mesh::random(&mut self.rng, self.memory, &self.families[which]));
         }
         // Now and then what was read is overwritten as soon as that is allowed.
-        if self.memory.all_lent() || self.rng.u8(..12) == 0 {
+        if self.memory.all_lent() || self.rng.u8(..40) == 0 {
             self.settle(which)?;
         } else {
             self.memory.lend();

@@ -28,7 +28,9 @@ impl Driver<'_> {
         let about = format!("a pool of {threads} threads, {bins_w}x{bins_h} bins, {max_jobs} jobs");
         let mut done = self.attach(which);
         for k in 0..self.rng.usize(5..50) {
-            done = done.and_then(|()| self.pool_step(which)).map_err(|failure| format!("pooled call {k}: {failure}"));
+            if done.is_ok() {
+                done = self.pool_step(which).map_err(|failure| format!("pooled call {k}: {failure}"));
+            }
             self.pooled += 1;
         }
         // Where nobody flushes, letting go of it does. After a failure, too: the other family may go before this one.
@@ -47,7 +49,8 @@ impl Driver<'_> {
             return self.set_resolution(which).and_then(|()| self.submitted(which, true));
         }
         match self.rng.u8(..100) {
-            0..50 => self.render(which).and_then(|()| self.submitted(which, false)),
+            0..46 => self.render(which).and_then(|()| self.submitted(which, false)),
+            46..50 => self.frame(which),
             50..56 => self.clear(which).and_then(|()| self.submitted(which, true)),
             56..62 => self.merge(which).and_then(|()| self.submitted(which, false)),
             62..74 => {
@@ -65,6 +68,20 @@ impl Driver<'_> {
             95..97 => self.exchange(which),
             _ => self.directly(which),
         }
+    }
+
+    /// A clear that waits, and behind it batches that are projected while what it clears is still there.
+    fn frame(&mut self, which: usize) -> Check {
+        self.settle(which)?;
+        self.wake(which, false)?;
+        self.clear(which).and_then(|()| self.submitted(which, true))?;
+        for _ in 0..self.rng.usize(2..16) {
+            self.render(which).and_then(|()| self.submitted(which, false))?;
+        }
+        self.merge(which).and_then(|()| self.submitted(which, false))?;
+        self.render(which).and_then(|()| self.submitted(which, false))?;
+        let wakes = self.rng.bool();
+        self.wake(which, wakes)
     }
 
     /// Gives the pool an object, and a near plane before or not.
@@ -137,8 +154,13 @@ impl Driver<'_> {
     }
 
     fn wake_or_suspend(&mut self, which: usize) -> Check {
-        let times = self.rng.u8(1..3);
         let wakes = self.rng.u8(..3) != 0;
+        self.wake(which, wakes)
+    }
+
+    /// Once or twice, or the threads sleep.
+    fn wake(&mut self, which: usize, wakes: bool) -> Check {
+        let times = self.rng.u8(1..3);
         let Some(pool) = &self.families[which].pool else { return Ok(()) };
         for _ in 0..times {
             // SAFETY: a live pool.
