@@ -110,6 +110,9 @@ impl Driver<'_> {
             })
             .and_then(|()| check_answer("TestRect by the pool", family, status, pooled.unwrap_or(answer)))
             .and_then(|()| match pooled {
+                Some(pooled) if (pooled == VIEW_CULLED) != (answer == VIEW_CULLED) => {
+                    Err(format!("the pool answers {pooled}, the others {answer}"))
+                }
                 Some(OCCLUDED) if answer != OCCLUDED => family.was_hidden([x0, y0, x1, y1], w),
                 _ => Ok(()),
             })

@@ -114,7 +114,7 @@ impl Family {
     }
 
     /// As `all`, for draws and queries; also what a pool answered, where it did. That may be an answer of before, so it
-    /// need not be the same until the pool was flushed.
+    /// need not be the same until the pool was flushed: hidden then and not now, or the other way.
     pub fn ask(
         &mut self,
         name: &str,
@@ -134,9 +134,8 @@ impl Family {
         let direct = (0..answers.len()).find(|&i| Some(i) != member).or(member).map_or(UNTOUCHED, |i| answers[i]);
         let same = |i: usize| Some(i) == member || answers[i] == direct;
         ensure((0..answers.len()).all(same), || format!("{name}: answers {answers:?}, pooled is {member:?}"))?;
-        let allowed = |answer| {
-            answer == direct || early && [(VISIBLE, OCCLUDED), (OCCLUDED, VISIBLE)].contains(&(answer, direct))
-        };
+        // Of triangles that pass by every pixel, but whose boxes are hidden, VIEW_CULLED becomes OCCLUDED, too.
+        let allowed = |answer| answer == direct || early && [answer, direct].contains(&OCCLUDED);
         ensure(pooled.is_none_or(allowed), || format!("{name}: the pool answers {pooled:?}, the others {direct}"))?;
         self.asked_early |= early && pooled.is_some();
         Ok((status, direct, pooled))

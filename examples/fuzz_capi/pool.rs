@@ -2,7 +2,8 @@
 //!
 //! Once the pool was flushed, all members have to agree, as ever. Before, the pool may answer a query as it would have been
 //! right at a moment since the last flush or clear: less is drawn, and a later triangle may also take the place of a layer
-//! that hid more. So a pool that says OCCLUDED is held to the nearest depth that each pixel had in the meantime.
+//! that hid more. So a pool that says OCCLUDED of a rectangle is held to the nearest depth that each pixel had in the
+//! meantime.
 
 use std::ptr::{null, null_mut};
 
@@ -104,24 +105,25 @@ impl Driver<'_> {
             mesh = mesh::random(&mut self.rng, self.memory, family);
         }
         let Some(pool) = &mut family.pool else { return Ok(mesh) };
-        if self.rng.u8(..4) == 0 {
+        let keeps_matrix = self.rng.u8(..4) == 0;
+        if keeps_matrix {
             mesh.matrix = pool.matrix.map_or(null(), |matrix| self.memory.matrix.put(&matrix, true).cast_const());
         }
+        let mut statuses = [MOC_Status::MOC_STATUS_OK; 2];
         // SAFETY: null, or a layout and a matrix in guarded memory; a live pool.
         unsafe {
             let layout = mesh.layout.as_ref().copied().unwrap_or(PACKED);
-            let same = |a: MOC_VertexLayout, b: MOC_VertexLayout| {
-                (a.stride, a.offset_y, a.offset_zw) == (b.stride, b.offset_y, b.offset_zw)
-            };
-            if !same(layout, pool.layout) || self.rng.bool() {
-                MOC_ThreadpoolSetVertexLayout(pool.handle, mesh.layout);
+            let numbers = |layout: MOC_VertexLayout| [layout.stride, layout.offset_y, layout.offset_zw];
+            if numbers(layout) != numbers(pool.layout) || self.rng.bool() {
+                statuses[0] = MOC_ThreadpoolSetVertexLayout(pool.handle, mesh.layout);
                 pool.layout = layout;
             }
-            let matrix = mesh.matrix.cast::<[f32; 16]>();
-            let matrix = if matrix.is_null() { None } else { Some(matrix.read_unaligned()) };
-            MOC_ThreadpoolSetMatrix(pool.handle, mesh.matrix);
-            pool.matrix = matrix;
+            if !keeps_matrix {
+                statuses[1] = MOC_ThreadpoolSetMatrix(pool.handle, mesh.matrix);
+                pool.matrix = mesh.matrix.cast::<[f32; 16]>().as_ref().copied();
+            }
         }
+        ensure(statuses.iter().all(|&status| status as i32 == OK), || format!("layout and matrix: {statuses:?}"))?;
         Ok(mesh)
     }
 

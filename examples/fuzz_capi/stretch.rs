@@ -172,7 +172,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// A matrix for the meshes that bring none, and a layout that no mesh has.
+    /// A matrix for the meshes that take what is set, and a layout that no mesh has.
     fn set_transform(&mut self, which: usize) -> Check {
         let matrix = if self.rng.bool() { Some(hostile::matrix(&mut self.rng)) } else { None };
         let layout = hostile::layout(&mut self.rng);
