@@ -5,18 +5,18 @@ use masked_occlusion_culling::MaskedOcclusionCulling;
 use masked_occlusion_culling::capi::*;
 
 use crate::episode::Memory;
-use crate::family::{Check, Family, OCCLUDED, OK, VIEW_CULLED, VISIBLE, ensure};
+use crate::family::{Check, Family, OCCLUDED, OK, UNTOUCHED, VIEW_CULLED, VISIBLE, ensure};
 use crate::hostile;
 use crate::memory::{self, Mode};
-use crate::mesh::{self, Mesh};
-
-/// Where a call that answers left its answer alone.
-const UNTOUCHED: i32 = 77;
+use crate::mesh::Mesh;
+use crate::pool;
 
 pub struct Driver<'a> {
     pub rng: Rng,
     pub memory: &'a mut Memory,
     pub families: [Family; 2],
+    /// Calls through pools.
+    pub pooled: u64,
 }
 
 impl Driver<'_> {
@@ -36,17 +36,27 @@ impl Driver<'_> {
             85..89 => self.set_near(which),
             89..94 => self.check_depth(which).map(|_| ()),
             94..96 => self.transform(),
-            96..98 => self.getters(which),
-            98 => self.settings(),
-            _ => self.nulls(),
+            96 => self.getters(which),
+            97 => match self.rng.u8(..3) {
+                0 => self.settings(),
+                1 => self.nulls(),
+                _ => self.pool_nulls(),
+            },
+            _ => self.stretch(which),
         }
     }
 
-    fn render(&mut self, which: usize) -> Check {
-        let before = if self.rng.u8(..8) == 0 { Some(self.check_depth(which)?) } else { None };
-        let mesh = mesh::random(&mut self.rng, self.memory, &self.families[which]);
+    pub(crate) fn render(&mut self, which: usize) -> Check {
+        // A pool would be flushed each time.
+        let looks = self.families[which].pool.is_none() && self.rng.u8(..8) == 0;
+        let before = if looks { Some(self.check_depth(which)?) } else { None };
+        let mesh = self.mesh(which)?;
         let family = &mut self.families[which];
-        let (status, answer) = family.all("RenderTriangles", |_, moc| render(moc, &mesh))?;
+        let through = family.through();
+        let (status, answer, _) = family.ask("RenderTriangles", |i, moc| match through(i) {
+            Some(pool) => pool::render(pool, &mesh),
+            None => render(moc, &mesh),
+        })?;
         check_prediction("RenderTriangles", &mesh, status).map_err(|failure| format!("{failure}\n{mesh}"))?;
         if status == OK {
             ensure([VISIBLE, VIEW_CULLED].contains(&answer), || format!("a draw answers {answer}"))?;
@@ -63,15 +73,21 @@ impl Driver<'_> {
         }
     }
 
-    fn test_triangles(&mut self, which: usize) -> Check {
-        let mesh = mesh::random(&mut self.rng, self.memory, &self.families[which]);
-        let family = &self.families[which];
-        let (status, answer) = family.all("TestTriangles", |_, moc| test(moc, &mesh))?;
+    pub(crate) fn test_triangles(&mut self, which: usize) -> Check {
+        let mesh = self.mesh(which)?;
+        let family = &mut self.families[which];
+        let through = family.through();
+        let (status, answer, pooled) = family.ask("TestTriangles", |i, moc| match through(i) {
+            Some(pool) => pool::test(pool, &mesh),
+            None => test(moc, &mesh),
+        })?;
         check_prediction("TestTriangles", &mesh, status)?;
-        check_answer("TestTriangles", family, status, answer).map_err(|failure| format!("{failure}\n{mesh}"))
+        check_answer("TestTriangles", family, status, answer)
+            .and_then(|()| check_answer("TestTriangles by the pool", family, status, pooled.unwrap_or(answer)))
+            .map_err(|failure| format!("{failure}\n{mesh}"))
     }
 
-    fn test_rect(&mut self, which: usize) -> Check {
+    pub(crate) fn test_rect(&mut self, which: usize) -> Check {
         let rng = &mut self.rng;
         let [mut x0, mut y0, mut x1, mut y1] = std::array::from_fn(|_| hostile::coordinate(rng));
         if rng.u8(..4) != 0 {
@@ -79,47 +95,84 @@ impl Driver<'_> {
             (y0, y1) = (y0.min(y1), y0.max(y1));
         }
         let w = if rng.u8(..6) == 0 { hostile::float(rng) } else { rng.f32() * 12.0 };
-        let family = &self.families[which];
-        let (status, answer) = family.all("TestRect", |_, moc| rect(moc, [x0, y0, x1, y1], w))?;
+        let family = &mut self.families[which];
+        let through = family.through();
+        let (status, answer, pooled) = family.ask("TestRect", |i, moc| match through(i) {
+            Some(pool) => pool::rect(pool, [x0, y0, x1, y1], w),
+            None => rect(moc, [x0, y0, x1, y1], w),
+        })?;
         ensure((status == OK) == family.size.is_some(), || format!("TestRect: status {status}"))?;
         check_answer("TestRect", family, status, answer)
             .and_then(|()| {
                 let unknowable = [x0, y0, x1, y1, w].iter().any(|c| c.is_nan()) || w <= 0.0;
-                ensure(!(unknowable && answer == OCCLUDED), || "an unknowable rectangle is OCCLUDED".into())
+                let answers = [answer, pooled.unwrap_or(answer)];
+                ensure(!(unknowable && answers.contains(&OCCLUDED)), || "an unknowable rectangle is OCCLUDED".into())
+            })
+            .and_then(|()| check_answer("TestRect by the pool", family, status, pooled.unwrap_or(answer)))
+            .and_then(|()| match pooled {
+                Some(pooled) if (pooled == VIEW_CULLED) != (answer == VIEW_CULLED) => {
+                    Err(format!("the pool answers {pooled}, the others {answer}"))
+                }
+                Some(OCCLUDED) if answer != OCCLUDED => family.was_hidden([x0, y0, x1, y1], w),
+                _ => Ok(()),
             })
             .map_err(|failure| format!("{failure}: rectangle {x0:e} {y0:e} {x1:e} {y1:e} w {w:e}"))
     }
 
-    fn clear(&mut self, which: usize) -> Check {
+    pub(crate) fn clear(&mut self, which: usize) -> Check {
         let family = &mut self.families[which];
-        // SAFETY: live objects that nobody else uses.
-        let (status, ()) = family.all("ClearBuffer", |_, moc| (unsafe { MOC_ClearBuffer(moc) } as i32, ()))?;
+        let through = family.through();
+        let (status, ()) = family.all("ClearBuffer", |i, moc| {
+            // SAFETY: live objects that nobody else uses, or the pool that uses one.
+            let status =
+                unsafe { through(i).map_or_else(|| MOC_ClearBuffer(moc), |pool| MOC_ThreadpoolClearBuffer(pool)) };
+            (status as i32, ())
+        })?;
         ensure((status == OK) == family.size.is_some(), || format!("ClearBuffer: status {status}"))?;
         family.empty |= status == OK;
         Ok(())
     }
 
-    fn merge(&mut self, which: usize) -> Check {
-        let with_itself = self.rng.u8(..12) == 0;
+    /// Merges a few objects: one by one, all at once, or by the pool.
+    pub(crate) fn merge(&mut self, which: usize) -> Check {
         let shift = self.rng.usize(..8);
-        let (mine, other) = (&self.families[which], &self.families[if with_itself { which } else { 1 - which }]);
+        let count = if self.rng.bool() { 1 } else { self.rng.usize(..4) };
+        let itself: Vec<bool> = (0..count).map(|_| self.rng.u8(..12) == 0).collect();
+        let (mine, other) = (&self.families[which], &self.families[1 - which]);
         // A partner on another instruction set has the same bits, so the result is the same.
-        let partner = |i: usize| other.members[if with_itself { i } else { (i + shift) % other.members.len() }];
-        // SAFETY: live objects that nobody else uses.
-        let call = |i: usize, moc| (unsafe { MOC_MergeBuffer(moc, partner(i)) } as i32, ());
-        let (status, ()) = mine.all("MergeBuffer", call)?;
-        let fits = mine.size.is_some() && mine.size == other.size && mine.y_axis == other.y_axis;
+        let partner = |i: usize, k: usize| {
+            if itself[k] { mine.members[i] } else { other.members[(i + k + shift) % other.members.len()] }.cast_const()
+        };
+        let same = mine.size == other.size && mine.y_axis == other.y_axis;
+        let fits = mine.size.is_some() && (same || itself.iter().all(|&itself| itself));
+        let through = mine.through();
+        let (status, ()) = mine.all("MergeBuffers", |i, moc| {
+            let partners: Vec<_> = (0..count).map(|k| partner(i, k)).collect();
+            let (others, len) = (partners.as_ptr(), count as u32);
+            // SAFETY: live objects that nobody else uses; of the other family, none until the pool was flushed.
+            let status = unsafe {
+                match through(i) {
+                    Some(pool) => MOC_ThreadpoolMergeBuffers(pool, others, len),
+                    None if count == 1 || fits && count > 0 && i % 2 == 1 => {
+                        let each = partners.iter().map(|&partner| MOC_MergeBuffer(moc, partner));
+                        each.max_by_key(|&status| status as i32).unwrap_or(MOC_Status::MOC_STATUS_OK)
+                    }
+                    None => MOC_MergeBuffers(moc, others, len),
+                }
+            };
+            (status as i32, ())
+        })?;
         ensure((status == OK) == fits, || {
-            format!("MergeBuffer: status {status} for {:?}, {:?}", mine.size, other.size)
+            format!("MergeBuffers: status {status} for {:?}, {:?}", mine.size, other.size)
         })?;
         if status == OK {
-            let empty = mine.empty && other.empty;
+            let empty = mine.empty && (other.empty || itself.iter().all(|&itself| itself));
             self.families[which].empty = empty;
         }
         Ok(())
     }
 
-    fn set_resolution(&mut self, which: usize) -> Check {
+    pub(crate) fn set_resolution(&mut self, which: usize) -> Check {
         let (width, height) = match self.families[1 - which].size {
             // The same size as the other family has, so that merging is allowed.
             Some(size) if self.rng.bool() => size,
@@ -128,9 +181,16 @@ impl Driver<'_> {
         let mode = [Mode::Works, Mode::Works, Mode::Works, Mode::Fails, Mode::Misaligns][self.rng.usize(..5)];
         memory::set_mode(mode);
         let family = &mut self.families[which];
-        let called = family.all("SetResolution", |_, moc| {
-            // SAFETY: live objects that nobody else uses.
-            (unsafe { MOC_SetResolution(moc, width, height) } as i32, ())
+        let through = family.through();
+        let called = family.all("SetResolution", |i, moc| {
+            // SAFETY: live objects that nobody else uses, or the pool that uses one.
+            let status = unsafe {
+                match through(i) {
+                    Some(pool) => MOC_ThreadpoolSetResolution(pool, width, height),
+                    None => MOC_SetResolution(moc, width, height),
+                }
+            };
+            (status as i32, ())
         });
         memory::set_mode(Mode::Works);
         let (status, ()) = called?;
@@ -150,21 +210,33 @@ impl Driver<'_> {
         Ok(())
     }
 
-    fn set_near(&mut self, which: usize) -> Check {
+    pub(crate) fn set_near(&mut self, which: usize) -> Check {
         let near = if self.rng.bool() { self.rng.f32() } else { hostile::float(&mut self.rng) };
         let family = &mut self.families[which];
-        // SAFETY: live objects that nobody else uses.
-        let call = |_, moc| (unsafe { MOC_SetNearClipPlane(moc, near) } as i32, ());
-        let (status, ()) = family.all("SetNearClipPlane", call)?;
+        let through = family.through();
+        let (status, ()) = family.all("SetNearClipPlane", |i, moc| {
+            // SAFETY: live objects that nobody else uses, or the pool that uses one.
+            let status = unsafe {
+                match through(i) {
+                    Some(pool) => MOC_ThreadpoolSetNearClipPlane(pool, near),
+                    None => MOC_SetNearClipPlane(moc, near),
+                }
+            };
+            (status as i32, ())
+        })?;
         ensure((status == OK) == near.is_finite(), || format!("SetNearClipPlane({near:e}): status {status}"))?;
         if status == OK {
             family.near = near;
+            if let Some(pool) = &mut family.pool {
+                pool.near = Some(near);
+            }
         }
         Ok(())
     }
 
     /// Reads the depth of every pixel, checks it, and returns its bits from the first row on.
     pub fn check_depth(&mut self, which: usize) -> Check<Vec<u32>> {
+        self.settle(which)?;
         let family = &self.families[which];
         let (width, height) = family.size.unwrap_or((1, 1));
         let pixels = width as usize * height as usize;

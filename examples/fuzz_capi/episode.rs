@@ -1,6 +1,8 @@
 //! One sequence of calls on two families of objects, and what has to hold at its end.
 
+use std::collections::VecDeque;
 use std::fmt;
+use std::mem::replace;
 
 use fastrand::Rng;
 
@@ -8,6 +10,9 @@ use crate::calls::Driver;
 use crate::family::{Check, Family, ensure};
 use crate::guarded::Guarded;
 use crate::memory;
+
+/// So many meshes may be in flight in a pool.
+const LENT: usize = 48;
 
 /// The arrays that calls read and write, all of them guarded.
 pub struct Memory {
@@ -17,6 +22,9 @@ pub struct Memory {
     pub layout: Guarded,
     pub scissor: Guarded,
     pub depth: Guarded,
+    /// Vertices and indices that a pool may still read, the oldest first, and how many of them.
+    lent: VecDeque<[Guarded; 2]>,
+    pub lent_count: usize,
     /// For each member of a family: the list structs, and what they point to.
     pub lists: Vec<(Guarded, Guarded)>,
 }
@@ -30,8 +38,24 @@ impl Memory {
             layout: Guarded::new(1 << 12),
             scissor: Guarded::new(1 << 12),
             depth: Guarded::new(1 << 22),
+            lent: (0..LENT).map(|_| [Guarded::new(1 << 16), Guarded::new(1 << 16)]).collect(),
+            lent_count: 0,
             lists: (0..8).map(|_| (Guarded::new(1 << 12), Guarded::new(1 << 20))).collect(),
         }
+    }
+
+    /// Is every array lent, so that a pool has to be flushed before the next mesh?
+    pub fn all_lent(&self) -> bool {
+        self.lent_count == LENT
+    }
+
+    /// Leaves the arrays of the last mesh as they are and takes those that were lent longest ago.
+    pub fn lend(&mut self) {
+        if let Some([vertices, indices]) = self.lent.pop_front() {
+            let used = [replace(&mut self.vertices, vertices), replace(&mut self.indices, indices)];
+            self.lent.push_back(used);
+        }
+        self.lent_count += 1;
     }
 }
 
@@ -40,11 +64,13 @@ impl Memory {
 pub struct Tally {
     pub episodes: u64,
     pub calls: u64,
+    /// Of these, through a pool of threads, on one object each.
+    pub pooled: u64,
 }
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} episodes, {} calls", self.episodes, self.calls)
+        write!(f, "{} episodes, {} calls, {} through a pool", self.episodes, self.calls, self.pooled)
     }
 }
 
@@ -52,7 +78,7 @@ impl fmt::Display for Tally {
 pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mut Tally) -> Check {
     let mut rng = Rng::with_seed(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number));
     let families = [family(&mut rng)?, family(&mut rng)?];
-    let mut driver = Driver { rng, memory, families };
+    let mut driver = Driver { rng, memory, families, pooled: 0 };
     for call in 0..driver.rng.usize(10..80) {
         let which = driver.rng.usize(..2);
         driver.step(which).map_err(|failure| format!("call {call}: {failure}\n{}", driver.families[which]))?;
@@ -68,6 +94,9 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
         driver.check_depth(which)?;
         driver.check_statistics(which)?;
     }
+    // In a stretch all other members are called, too.
+    tally.pooled += driver.pooled;
+    tally.calls += driver.pooled * driver.families[0].members.len() as u64;
     drop(driver);
     tally.episodes += 1;
     ensure(memory::live_blocks() == 0, || format!("{} blocks of memory were not freed", memory::live_blocks()))
@@ -75,5 +104,6 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
 
 fn family(rng: &mut Rng) -> Check<Family> {
     // The same axis more often than not, so that merging is allowed.
-    Family::new(rng.i32(0..3), i32::from(rng.u8(..4) == 0), rng.bool())
+    // Some of what threads leave out, they draw where it is counted.
+    Family::new(rng.i32(0..3), i32::from(rng.u8(..4) == 0), rng.bool(), rng.bool())
 }

@@ -6,11 +6,16 @@ use masked_occlusion_culling::MaskedOcclusionCulling;
 use masked_occlusion_culling::capi::*;
 
 use crate::memory;
+use crate::pool::Pool;
 
 pub const OK: i32 = MOC_Status::MOC_STATUS_OK as i32;
 pub const VISIBLE: i32 = MOC_CullingResult::MOC_VISIBLE as i32;
 pub const OCCLUDED: i32 = MOC_CullingResult::MOC_OCCLUDED as i32;
 pub const VIEW_CULLED: i32 = MOC_CullingResult::MOC_VIEW_CULLED as i32;
+
+pub const NO_BUFFER: i32 = MOC_Status::MOC_STATUS_NO_BUFFER as i32;
+/// Where a call that answers left its answer alone, or has none to give.
+pub const UNTOUCHED: i32 = 77;
 
 /// What went wrong, in words.
 pub type Check<T = ()> = Result<T, String>;
@@ -29,18 +34,38 @@ pub struct Family {
     pub own_allocator: bool,
     /// Nothing was drawn since it was cleared.
     pub empty: bool,
+    /// While a pool draws into one member.
+    pub pool: Option<Pool>,
+    /// A pool was asked amid its work: how far its member looked depends on what was drawn by then.
+    pub asked_early: bool,
 }
 
 impl Family {
-    pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool) -> Check<Self> {
-        let mut family =
-            Self { members: Vec::new(), size: None, near: 0.0, update_rule, y_axis, own_allocator, empty: true };
+    pub fn new(update_rule: i32, y_axis: i32, own_allocator: bool, statistics: bool) -> Check<Self> {
+        let mut family = Self {
+            members: Vec::new(),
+            size: None,
+            near: 0.0,
+            update_rule,
+            y_axis,
+            own_allocator,
+            empty: true,
+            pool: None,
+            asked_early: false,
+        };
         let mut seen = Vec::new();
         for implementation in [-1, 0, 1, 2, 3, 16] {
             let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
                 if own_allocator { (Some(memory::alloc), Some(memory::free)) } else { (None, None) };
-            let settings =
-                MOC_Settings { implementation, update_rule, y_axis, precise_coverage: 1, statistics: 1, alloc, free };
+            let settings = MOC_Settings {
+                implementation,
+                update_rule,
+                y_axis,
+                precise_coverage: 1,
+                statistics: statistics.into(),
+                alloc,
+                free,
+            };
             let (mut moc, mut used) = (null_mut(), 0);
             // SAFETY: the settings and the place for the object are valid, the callbacks are an allocator.
             let status = unsafe { MOC_Create(&settings, &mut moc) } as i32;
@@ -80,6 +105,40 @@ impl Family {
             }
         }
         first.ok_or_else(|| "a family without members".into())
+    }
+
+    /// The pool through which a member has to be called.
+    pub fn through(&self) -> impl Fn(usize) -> Option<*const MOC_Threadpool> + Copy + use<> {
+        let pool = self.pool.as_ref().map(|pool| (pool.member, pool.handle.cast_const()));
+        move |i| pool.filter(|&(member, _)| member == i).map(|(_, handle)| handle)
+    }
+
+    /// As `all`, for draws and queries; also what a pool answered, where it did. That may be an answer of before, so it
+    /// need not be the same until the pool was flushed: hidden then and not now, or the other way.
+    pub fn ask(
+        &mut self,
+        name: &str,
+        mut call: impl FnMut(usize, *mut MaskedOcclusionCulling) -> (i32, i32),
+    ) -> Check<(i32, i32, Option<i32>)> {
+        let member = self.pool.as_ref().map(|pool| pool.member);
+        let mut answers = Vec::new();
+        let (status, ()) = self.all(name, |i, moc| {
+            let (status, answer) = call(i, moc);
+            answers.push(answer);
+            // A pool looks for the buffer first, an object last.
+            let late = member.is_some_and(|member| member != i) && self.size.is_none() && status != OK;
+            (if late { NO_BUFFER } else { status }, ())
+        })?;
+        let early = self.pool.as_ref().is_some_and(|pool| !pool.settled);
+        let pooled = member.map(|member| answers[member]).filter(|&answer| answer != UNTOUCHED);
+        let direct = (0..answers.len()).find(|&i| Some(i) != member).or(member).map_or(UNTOUCHED, |i| answers[i]);
+        let same = |i: usize| Some(i) == member || answers[i] == direct;
+        ensure((0..answers.len()).all(same), || format!("{name}: answers {answers:?}, pooled is {member:?}"))?;
+        // Of triangles that pass by every pixel, but whose boxes are hidden, VIEW_CULLED becomes OCCLUDED, too.
+        let allowed = |answer| answer == direct || early && [answer, direct].contains(&OCCLUDED);
+        ensure(pooled.is_none_or(allowed), || format!("{name}: the pool answers {pooled:?}, the others {direct}"))?;
+        self.asked_early |= early && pooled.is_some();
+        Ok((status, direct, pooled))
     }
 }
 

@@ -60,6 +60,7 @@ pub fn enumeration(rng: &mut Rng, values: &[i32]) -> i32 {
 #[derive(Clone, Copy)]
 enum Kind {
     Ordinary,
+    Wall,
     NearHugging,
     Hostile,
     OnGrid,
@@ -69,18 +70,24 @@ enum Kind {
 
 /// `count` vertices x, y, w (or z) for a buffer of `width` by `height` pixels and a near plane.
 pub fn vertices(rng: &mut Rng, count: usize, width: u32, height: u32, near: f32) -> Vec<[f32; 3]> {
-    use Kind::{Hostile, MixedScale, NearHugging, OnGrid, Ordinary, Sliver};
-    let kinds = [Ordinary, Ordinary, NearHugging, Hostile, OnGrid, Sliver, MixedScale];
+    use Kind::{Hostile, MixedScale, NearHugging, OnGrid, Ordinary, Sliver, Wall};
+    let kinds = [Ordinary, Ordinary, Wall, NearHugging, Hostile, OnGrid, Sliver, MixedScale];
     let kind = kinds[rng.usize(..kinds.len())];
     // One hostile number in a mesh of good ones is the common case in the field.
     let poison = if rng.u8(..6) == 0 { 0.05 } else { 0.0 };
     let (x0, y0) = (uniform(rng, 1.0), uniform(rng, 1.0));
     let spread = [1e-3, 0.02, 0.3, 2.0][rng.usize(..4)];
+    let wall = rng.f32() * 3.0 + 0.05;
     (0..count)
         .map(|_| {
             let w = rng.f32() * 9.9 + 0.1;
             let mut v = match kind {
                 Ordinary => [(x0 + uniform(rng, spread)) * w, (y0 + uniform(rng, spread)) * w, w],
+                // A few of its triangles hide the whole screen.
+                Wall => {
+                    let mut corner = || if rng.bool() { 20.0 * wall } else { -20.0 * wall };
+                    [corner(), corner(), wall]
+                }
                 NearHugging => {
                     let ulps = rng.i32(-3..4);
                     let w = match rng.u8(..4) {

@@ -24,6 +24,7 @@ struct Lists {
 impl Driver<'_> {
     /// Bins a mesh, perhaps scribbles over the lists, and draws them.
     pub(crate) fn bins(&mut self, which: usize) -> Check {
+        self.settle(which)?;
         let rng = &mut self.rng;
         let (bins_w, bins_h) = match rng.u8(..12) {
             0 => [(0, 1), (1, 0), (u32::MAX, 1), (1, u32::MAX), (u32::MAX, u32::MAX), (65_536, 65_536)][rng.usize(..6)],

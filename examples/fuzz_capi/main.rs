@@ -1,7 +1,7 @@
 //! A hostile driver of the C interface: random sequences of calls with random, wrong and wicked arguments.
 //!
 //! Every sequence goes to one object an instruction set, which have to agree in every status, answer,
-//! list, statistic and bit of depth. All arrays border on forbidden pages. It ends with status 1, and with
+//! list, statistic and bit of depth; now and then one of them is drawn into by a pool of threads. All arrays border on forbidden pages. It ends with status 1, and with
 //! the seed and number of the episode, at the first crash, hang, disagreement or impossible answer.
 //!
 //! `cargo run --release --example fuzz_capi -- --seconds 30 --seed 1`
@@ -26,6 +26,10 @@ mod memory;
 mod mesh;
 #[cfg(unix)]
 mod objects;
+#[cfg(unix)]
+mod pool;
+#[cfg(unix)]
+mod stretch;
 
 #[cfg(unix)]
 fn main() -> std::process::ExitCode {

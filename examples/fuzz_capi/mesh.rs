@@ -21,6 +21,8 @@ pub struct Mesh {
     pub layout: *const MOC_VertexLayout,
     /// It goes to the entry point that is told the length of the vertices.
     pub checked: bool,
+    /// Every vertex that it names can be read, also by an entry point that is not told the length.
+    pub whole: bool,
     /// Whether it has to be refused, where that is known.
     pub refused: Option<bool>,
     /// The corners as they were strewn, where it is known, for a failure's report.
@@ -85,6 +87,7 @@ pub fn random(rng: &mut Rng, memory: &mut Memory, family: &Family) -> Mesh {
         clip_planes: hostile::enumeration(rng, &[0, 1, 0x1e, 0x1f, 0x1f]),
         layout: layout_ptr,
         checked,
+        whole: in_range && !any_layout,
         refused: None,
         corners: Vec::new(),
     };

@@ -1,0 +1,222 @@
+//! The pool of threads: what is set there, what it may still read, and what it may answer.
+//!
+//! Once the pool was flushed, all members have to agree, as ever. Before, the pool may answer a query as it would have been
+//! right at a moment since the last flush or clear: less is drawn, and a later triangle may also take the place of a layer
+//! that hid more. So a pool that says OCCLUDED of a rectangle is held to the nearest depth that each pixel had in the
+//! meantime.
+
+use std::ptr::{null, null_mut};
+
+use masked_occlusion_culling::capi::*;
+
+use crate::calls::Driver;
+use crate::family::{Check, Family, OK, UNTOUCHED, ensure};
+use crate::mesh::{self, Mesh};
+use crate::objects::NULL_POINTER;
+
+/// Larger buffers are not looked at after each call.
+const FEW_PIXELS: usize = 100_000;
+
+/// A pool that draws into a member of a family, and what is set there.
+pub struct Pool {
+    pub handle: *mut MOC_Threadpool,
+    pub member: usize,
+    /// Nothing was submitted since it was flushed.
+    pub settled: bool,
+    /// The near plane that the next object gets.
+    pub near: Option<f32>,
+    pub matrix: Option<[f32; 16]>,
+    pub layout: MOC_VertexLayout,
+    /// It is asked while it draws.
+    pub asks_early: bool,
+    /// The nearest that each pixel was since the last flush or clear; nothing where that is not known.
+    nearest: Vec<f32>,
+}
+
+const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, offset_zw: 12 };
+
+impl Pool {
+    pub fn new(handle: *mut MOC_Threadpool, asks_early: bool) -> Self {
+        let (matrix, layout, near) = (None, PACKED, None);
+        Self { handle, member: 0, settled: true, near, matrix, layout, asks_early, nearest: Vec::new() }
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        // SAFETY: made by `Driver::stretch`, which lets go of it while its object and all arrays are there.
+        unsafe { MOC_ThreadpoolDestroy(self.handle) };
+    }
+}
+
+impl Driver<'_> {
+    /// Flushes the pool, if there is one.
+    pub(crate) fn settle(&mut self, which: usize) -> Check {
+        let Some(pool) = &mut self.families[which].pool else { return Ok(()) };
+        // SAFETY: a live pool.
+        let status = unsafe { MOC_ThreadpoolFlush(pool.handle) } as i32;
+        ensure(status == OK, || format!("ThreadpoolFlush: status {status}"))?;
+        self.submitted(which, true)?;
+        if let Some(pool) = &mut self.families[which].pool {
+            pool.settled = true;
+        }
+        self.memory.lent_count = 0;
+        Ok(())
+    }
+
+    /// Takes note of what has been submitted. `anew`: what was there before hides nothing any more, or is drawn.
+    pub(crate) fn submitted(&mut self, which: usize, anew: bool) -> Check {
+        let Family { members, size, pool, .. } = &mut self.families[which];
+        let Some(pool) = pool else { return Ok(()) };
+        pool.settled = false;
+        let pixels = size.map_or(0, |(width, height)| width as usize * height as usize);
+        let before = std::mem::take(&mut pool.nearest);
+        let direct = (0..members.len()).find(|&i| i != pool.member);
+        let (Some(direct), true) = (direct, pool.asks_early && (1..=FEW_PIXELS).contains(&pixels)) else {
+            return Ok(());
+        };
+        if !anew && before.len() != pixels {
+            return Ok(());
+        }
+        let mut now = vec![0.0; pixels];
+        // SAFETY: a live object that nobody else uses, and room for every pixel.
+        let status = unsafe { MOC_ComputePixelDepthBuffer(members[direct], now.as_mut_ptr(), 0) } as i32;
+        if !anew {
+            now.iter_mut().zip(before).for_each(|(now, before)| *now = before.max(*now));
+        }
+        pool.nearest = now;
+        ensure(status == OK, || format!("ComputePixelDepthBuffer: status {status}"))
+    }
+
+    /// A mesh whose arrays may be read as long as the family's pool needs them, and with which its settings agree.
+    pub(crate) fn mesh(&mut self, which: usize) -> Check<Mesh> {
+        if self.families[which].pool.is_none() {
+            return Ok(mesh::random(&mut self.rng, self.memory, &self.families[which]));
+        }
+        // Now and then what was read is overwritten as soon as that is allowed.
+        if self.memory.all_lent() || self.rng.u8(..40) == 0 {
+            self.settle(which)?;
+        } else {
+            self.memory.lend();
+        }
+        let family = &mut self.families[which];
+        let mut mesh = mesh::random(&mut self.rng, self.memory, family);
+        while !mesh.whole {
+            mesh = mesh::random(&mut self.rng, self.memory, family);
+        }
+        let Some(pool) = &mut family.pool else { return Ok(mesh) };
+        let keeps_matrix = self.rng.u8(..4) == 0;
+        if keeps_matrix {
+            mesh.matrix = pool.matrix.map_or(null(), |matrix| self.memory.matrix.put(&matrix, true).cast_const());
+        }
+        let mut statuses = [MOC_Status::MOC_STATUS_OK; 2];
+        // SAFETY: null, or a layout and a matrix in guarded memory; a live pool.
+        unsafe {
+            let layout = mesh.layout.as_ref().copied().unwrap_or(PACKED);
+            let numbers = |layout: MOC_VertexLayout| [layout.stride, layout.offset_y, layout.offset_zw];
+            if numbers(layout) != numbers(pool.layout) || self.rng.bool() {
+                statuses[0] = MOC_ThreadpoolSetVertexLayout(pool.handle, mesh.layout);
+                pool.layout = layout;
+            }
+            if !keeps_matrix {
+                statuses[1] = MOC_ThreadpoolSetMatrix(pool.handle, mesh.matrix);
+                pool.matrix = mesh.matrix.cast::<[f32; 16]>().as_ref().copied();
+            }
+        }
+        ensure(statuses.iter().all(|&status| status as i32 == OK), || format!("layout and matrix: {statuses:?}"))?;
+        Ok(mesh)
+    }
+
+    /// Null in place of the pool, and of what has to be named; numbers that no pool can have.
+    pub(crate) fn pool_nulls(&mut self) -> Check {
+        let (mut answer, mut depth, mut pool) = (0, 0.0, null_mut());
+        // SAFETY: null where the functions say that they refuse it, else a live pool and places to write.
+        unsafe {
+            for [threads, bins_w, bins_h, jobs] in
+                [[1, 0, 1, 1], [1, 1, 0, 1], [0, 1, 1, 0], [1025, 1, 1, 1], [u32::MAX; 4]]
+            {
+                pool = std::ptr::dangling_mut();
+                let status = MOC_ThreadpoolCreate(threads, bins_w, bins_h, jobs, &mut pool);
+                ensure(status == MOC_Status::MOC_STATUS_INVALID_SIZE && pool.is_null(), || {
+                    format!("ThreadpoolCreate({threads}, {bins_w}, {bins_h}, {jobs}): status {status:?}")
+                })?;
+            }
+            MOC_ThreadpoolCreate(1, 1, 1, 1, &mut pool);
+            let statuses = [
+                MOC_ThreadpoolCreate(1, 1, 1, 1, null_mut()),
+                MOC_ThreadpoolWakeThreads(null()),
+                MOC_ThreadpoolSuspendThreads(null()),
+                MOC_ThreadpoolFlush(null()),
+                MOC_ThreadpoolSetBuffer(null(), null_mut()),
+                MOC_ThreadpoolSetResolution(null(), 8, 8),
+                MOC_ThreadpoolSetNearClipPlane(null(), 1.0),
+                MOC_ThreadpoolSetMatrix(null(), null()),
+                MOC_ThreadpoolSetVertexLayout(null(), null()),
+                MOC_ThreadpoolClearBuffer(null()),
+                MOC_ThreadpoolRenderTriangles(null(), null(), null(), 0, 1, 0x1f),
+                MOC_ThreadpoolTestRect(null(), 0.0, 0.0, 1.0, 1.0, 1.0, &mut answer),
+                MOC_ThreadpoolTestRect(pool, 0.0, 0.0, 1.0, 1.0, 1.0, null_mut()),
+                MOC_ThreadpoolTestTriangles(null(), null(), null(), 0, 1, 0x1f, &mut answer),
+                MOC_ThreadpoolComputePixelDepthBuffer(null(), &mut depth, 0),
+                MOC_ThreadpoolComputePixelDepthBuffer(pool, null_mut(), 0),
+                MOC_ThreadpoolMergeBuffers(null(), null(), 0),
+                MOC_ThreadpoolMergeBuffers(pool, null(), 1),
+                MOC_ThreadpoolMergeBuffers(pool, &null(), 1),
+            ];
+            let ends = [MOC_ThreadpoolDestroy(pool), MOC_ThreadpoolDestroy(null_mut())];
+            let wrong = statuses.iter().position(|&status| status as i32 != NULL_POINTER);
+            ensure(wrong.is_none(), || format!("null pointers of pools: call {wrong:?} does not say so"))?;
+            ensure(ends.iter().all(|&status| status as i32 == OK), || format!("ThreadpoolDestroy: {ends:?}"))
+        }
+    }
+}
+
+impl Family {
+    /// Could a pool say OCCLUDED of a rectangle? Each pixel whose centre is inside was as near at some moment.
+    pub fn was_hidden(&self, [x0, y0, x1, y1]: [f32; 4], w: f32) -> Check {
+        let (Some((width, height)), Some(pool)) = (self.size, &self.pool) else { return Ok(()) };
+        if pool.nearest.is_empty() {
+            return Ok(());
+        }
+        let centres = |from: f32, to: f32, size: u32| {
+            let at = |x: f32| ((f64::from(x.clamp(-1.0, 1.0)) * 0.5 + 0.5) * f64::from(size) - 0.5).ceil() as usize;
+            at(from)..at(to)
+        };
+        let (row0, row1) = if self.y_axis == 0 { (-y1, -y0) } else { (y0, y1) };
+        for (x, y) in centres(row0, row1, height).flat_map(|y| centres(x0, x1, width).map(move |x| (x, y))) {
+            let nearest = pool.nearest[y * width as usize + x];
+            ensure(f64::from(nearest) * f64::from(w) > 0.999, || {
+                format!(
+                    "the pool says OCCLUDED, the others VISIBLE, and pixel ({x}, {y}) was never nearer than {nearest:e}"
+                )
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// Draws a mesh with what is set. There is no answer.
+pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
+    // SAFETY: a live pool; each pointer is null or valid, and the arrays stay as they are until it was flushed.
+    let status = unsafe {
+        MOC_ThreadpoolRenderTriangles(pool, m.vertices, m.triangles, m.n_triangles, m.winding, m.clip_planes)
+    };
+    (status as i32, UNTOUCHED)
+}
+
+/// Tests a mesh likewise.
+pub fn test(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
+    let mut answer = UNTOUCHED;
+    // SAFETY: as in `render`.
+    let status = unsafe {
+        MOC_ThreadpoolTestTriangles(pool, m.vertices, m.triangles, m.n_triangles, m.winding, m.clip_planes, &mut answer)
+    };
+    (status as i32, answer)
+}
+
+pub fn rect(pool: *const MOC_Threadpool, [x0, y0, x1, y1]: [f32; 4], w: f32) -> (i32, i32) {
+    let mut answer = UNTOUCHED;
+    // SAFETY: a live pool, and a place for the answer.
+    let status = unsafe { MOC_ThreadpoolTestRect(pool, x0, y0, x1, y1, w, &mut answer) };
+    (status as i32, answer)
+}
