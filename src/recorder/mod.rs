@@ -50,7 +50,7 @@ struct State {
 }
 
 impl Recorder {
-    #[inline]
+    #[inline(always)]
     pub fn is_on(&self) -> bool {
         self.on.load(Relaxed)
     }
@@ -61,6 +61,7 @@ impl Recorder {
 
     /// Writes a call, if there still is a file.
     #[cold]
+    #[inline(never)]
     fn record(&self, write: impl FnOnce(&mut Writer<BufWriter<File>>) -> io::Result<()>) {
         let mut state = self.lock();
         if let Err(error) = state.write(write) {
@@ -71,12 +72,14 @@ impl Recorder {
         }
     }
 
+    #[inline(always)]
     pub fn clear_buffer(&self) {
         if self.is_on() {
             self.record(|file| file.clear_buffer());
         }
     }
 
+    #[inline(always)]
     pub fn test_rect(&self, result: Option<CullingResult>, edges: [f32; 4], w_min: f32) {
         if self.is_on() {
             self.record(|file| file.test_rect(result, edges, w_min));
@@ -85,6 +88,7 @@ impl Recorder {
 
     /// # Safety
     /// Every vertex from the lowest to the highest index can be read.
+    #[inline(always)]
     pub unsafe fn render_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
         if self.is_on() {
             // SAFETY: the caller's contract.
@@ -94,6 +98,7 @@ impl Recorder {
 
     /// # Safety
     /// Every vertex from the lowest to the highest index can be read.
+    #[inline(always)]
     pub unsafe fn test_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
         if self.is_on() {
             // SAFETY: the caller's contract.
