@@ -84,7 +84,6 @@ static Moc::BackfaceWinding Backfaces(const Matrix &m) {
 
 struct Box { float lo[3], hi[3]; };
 struct Rect { float xmin, ymin, xmax, ymax, wmin; };
-
 // What TestRect asks for. A box that reaches through the near plane has no rectangle on the screen: with a wmin of 0
 // the answer is VISIBLE.
 static Rect ProjectBox(const Matrix &m, const Box &box, float nearW) {
@@ -110,8 +109,8 @@ static std::array<float, 4> FromOrthographic(float x, float y, float z) {
 }
 
 static const int kWidth = 320, kHeight = 180;
-static std::vector<float> reference;  // pixels and answers of the first convention
-static std::string expected;
+static std::vector<float> reference;  // the pixels of the first convention
+static std::string expected;          // and its answers
 static bool failed = false;
 
 static std::string Text(Moc::CullingResult result) {
@@ -148,10 +147,7 @@ static void Check(const std::string &what, Moc *moc, const Matrix &toClip, float
     }
     std::vector<float> depth(kWidth * kHeight);
     moc->ComputePixelDepthBuffer(depth.data(), flipRows);
-    if (reference.empty()) {
-        reference = depth;
-        expected = answers;
-    }
+    if (reference.empty()) reference = depth, expected = answers;
     Say(what, answers == expected && depth == reference, answers.substr(1));
 }
 
@@ -161,7 +157,6 @@ static std::vector<float> Positions(float forward) {
     return p;
 }
 
-// Draws the wall with a matrix into a cleared buffer, and asks.
 static void Matrices(Moc *moc) {
     const Moc::VertexLayout packed(12, 4, 8);
     const std::vector<float> right = Positions(-1), left = Positions(1);
@@ -188,7 +183,7 @@ static void Matrices(Moc *moc) {
     const Moc::CullingResult mirrored = draw(right, kCounterClockwise, Vulkan(), Moc::BACKFACE_CW);
     Say("Vulkan's matrix as it is", mirrored == Moc::VIEW_CULLED, Text(mirrored));
 
-    // A mesh that the model matrix mirrors. Its fronts are counter-clockwise where it is made.
+    // Fronts are counter-clockwise in the mesh, and the model matrix mirrors it.
     const Matrix mirror = {{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     std::vector<float> mesh = right;
     for (size_t i = 0; i < mesh.size(); i += 3) mesh[i] = -mesh[i];
@@ -214,11 +209,8 @@ static void Layouts(Moc *moc) {
             clipSoa[4 * k + i] = xyw[3 * i + k];
         }
     }
-    const struct {
-        const char *what;
-        const float *x, *matrix;
-        Moc::VertexLayout layout;
-    } layouts[] = {
+    struct Case { const char *what; const float *x, *matrix; Moc::VertexLayout layout; };
+    const Case layouts[] = {
         // With a matrix the third offset is that of z, without one that of w.
         {"x, y, z", xyz.data(), m.data(), Moc::VertexLayout(12, 4, 8)},
         {"x, y, z, 1", xyz1.data(), m.data(), Moc::VertexLayout(16, 4, 8)},
@@ -228,7 +220,7 @@ static void Layouts(Moc *moc) {
         {"clip space x, y, w", xyw.data(), nullptr, Moc::VertexLayout(12, 4, 8)},
         {"clip space, arrays of x, of y, of w", clipSoa.data(), nullptr, Moc::VertexLayout(4, 4 * 4, 8 * 4)},
     };
-    for (const auto &l : layouts) {
+    for (const Case &l : layouts) {
         moc->ClearBuffer();
         moc->RenderTriangles(l.x, kCounterClockwise, 2, l.matrix, Moc::BACKFACE_CW, Moc::CLIP_PLANE_ALL, l.layout);
         Check(l.what, moc, m, -1);
@@ -238,18 +230,26 @@ static void Layouts(Moc *moc) {
     Say("x, y, z, 1 with the default layout", lost == Moc::VIEW_CULLED, Text(lost));
 }
 
-// A box around the eye: its faces are seen from inside, so that they face away.
+// A wall across the view, and a box around the eye: all of its faces are behind the wall, but not what may be inside.
 static void AroundTheEye(Moc *moc) {
-    const float corners[24] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1};
-    const unsigned faces[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
-                                3, 6, 2, 3, 7, 6, 0, 4, 7, 0, 7, 3, 1, 2, 6, 1, 6, 5};
-    for (Moc::BackfaceWinding away : {Moc::BACKFACE_CW, Moc::BACKFACE_NONE}) {
-        const bool fronts = away == Moc::BACKFACE_CW;
-        const Moc::CullingResult result = moc->TestTriangles(corners, faces, 12, OpenGl().data(), away,
-                                                             Moc::CLIP_PLANE_ALL, Moc::VertexLayout(12, 4, 8));
-        Say(fronts ? "a box around the eye, fronts only" : "a box around the eye, both sides",
-            result == (fronts ? Moc::VIEW_CULLED : Moc::VISIBLE), Text(result));
-    }
+    const float wall[16] = {-20, -20, 0, 10, 20, -20, 0, 10, 20, 20, 0, 10, -20, 20, 0, 10};
+    const Box box = {{-20, -20, -20}, {20, 20, 20}};
+    std::vector<float> corners;
+    for (int i = 0; i < 24; ++i) corners.push_back(i / 3 >> i % 3 & 1 ? box.hi[i % 3] : box.lo[i % 3]);
+    const unsigned faces[36] = {0, 3, 1, 0, 2, 3, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                2, 7, 3, 2, 6, 7, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    moc->ClearBuffer();
+    moc->RenderTriangles(wall, kCounterClockwise, 2);
+    const auto test = [&](Moc::BackfaceWinding away) {
+        return Text(moc->TestTriangles(corners.data(), faces, 12, OpenGl().data(), away, Moc::CLIP_PLANE_ALL,
+                                       Moc::VertexLayout(12, 4, 8)));
+    };
+    const std::string fronts = test(Moc::BACKFACE_CW), both = test(Moc::BACKFACE_NONE);
+    Say("a box around the eye, fronts", fronts == "outside", fronts);
+    Say("a box around the eye, both sides", both == "occluded", both);
+    const Rect r = ProjectBox(OpenGl(), box, kNear);
+    const std::string rect = Text(moc->TestRect(r.xmin, r.ymin, r.xmax, r.ymax, r.wmin));
+    Say("a box around the eye, TestRect", rect == "visible", rect);
 }
 
 // A slanted wall: z is 0.2 at the left of the screen, 0.8 at the right, and so 0.5 in the middle.
@@ -258,20 +258,20 @@ static void Orthographic(Moc *moc) {
     for (int i = 0; i < 4; ++i) {
         const float x = i % 3 ? 1.0f : -1.0f, y = i / 2 ? 1.0f : -1.0f, z = 0.5f + 0.3f * x;
         plain.insert(plain.end(), {x, y, z, 1});
-        const std::array<float, 4> v = FromOrthographic(x, y, z);
-        deep.insert(deep.end(), v.begin(), v.end());
+        for (float c : FromOrthographic(x, y, z)) deep.push_back(c);
     }
-    const auto ask = [&](const char *what, float w, Moc::CullingResult right) {
-        const Moc::CullingResult result = moc->TestRect(-0.05f, -0.05f, 0.05f, 0.05f, w);
-        Say(what, result == right, Text(result));
+    const auto ask = [&](const char *what, float w, const std::string &right) {
+        const std::string answer = Text(moc->TestRect(-0.05f, -0.05f, 0.05f, 0.05f, w));
+        Say(what, answer == right, answer);
     };
+    moc->SetNearClipPlane(0);
     moc->ClearBuffer();
     moc->RenderTriangles(plain.data(), kCounterClockwise, 2);
-    ask("orthographic, w as it is", 1, Moc::VISIBLE);
+    ask("orthographic, w as it is", 1, "visible");
     moc->ClearBuffer();
     moc->RenderTriangles(deep.data(), kCounterClockwise, 2);
-    ask("orthographic, depth from z, behind", 1 / (2 - 0.55f), Moc::OCCLUDED);
-    ask("orthographic, depth from z, in front", 1 / (2 - 0.45f), Moc::VISIBLE);
+    ask("orthographic, depth from z, behind", 1 / (2 - 0.55f), "occluded");
+    ask("orthographic, depth from z, in front", 1 / (2 - 0.45f), "visible");
 }
 
 int main() {

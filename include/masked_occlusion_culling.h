@@ -57,19 +57,21 @@
  *
  * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion and MOC_StatusText. Where it is not
  * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
- * a program that does not look at the status culls less, and nothing worse. Enumerations are passed as int32_t and
- * checked.
+ * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
+ * passed as int32_t and checked.
  *
  * Null. A pointer may be null where the function says so. Where it may not, null is refused with
  * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
- * "Required" of a function says what has to hold, and without it the behaviour is undefined. Indices are trusted,
- * too; functions whose names end in Checked take the length of the vertex array, and look at every one.
+ * "Required" of a function says what has to hold, and without it the behaviour is undefined. Where it says "null or",
+ * null does no harm; whether it is refused is said above it. Indices are trusted, too; functions whose names end in
+ * Checked take the length of the array, and look at every one.
  *
  * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
  * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
- * returns, with three exceptions: vertices and indices of MOC_ThreadpoolRenderTriangles stay as they are until
- * MOC_ThreadpoolFlush (matrix and layout are copied); the object that a pool draws into lives as long as the
- * pool, or until it gets another; and the callbacks of MOC_Settings are called until the object is destroyed.
+ * returns, with three exceptions: vertices and indices of MOC_ThreadpoolRenderTriangles, and the objects of
+ * MOC_ThreadpoolMergeBuffers, stay as they are until MOC_ThreadpoolFlush (matrix and layout are copied); the object that
+ * a pool draws into lives as long as the pool, or until it gets another; and the callbacks of MOC_Settings are called
+ * until the object is destroyed.
  *
  * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
  * const object may run at once on several threads while no function that takes it without const does. One of them
@@ -836,8 +838,8 @@ MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
 
 /**
  * Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
- * allocator. They can be called, and given to other objects, also after this one is destroyed. None of the two pointers may
- * be null.
+ * allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+ * may be null.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -850,7 +852,7 @@ MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
                                     MOC_AlignedFree *free);
 
 /**
- * Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for 32x8 pixels.
+ * Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
@@ -977,9 +979,9 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
  * triangle that faces the eye touches a pixel, or there is none; MOC_VISIBLE also for triangles with a NaN or infinite
  * coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
  *
- * Where the eye may be inside of what is tested, as with boxes around objects, pass MOC_BACKFACE_NONE: all that it
- * sees of them faces away. Where the near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the
- * eye within the view are MOC_VISIBLE.
+ * The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
+ * or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
+ * near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
  *
  * Errors: as MOC_RenderTriangles.
  *
@@ -1046,8 +1048,8 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
 
 /**
  * Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
- * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. They are the
- * depths that tests compare with, which are never nearer than what was drawn.
+ * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
+ * depths are those that tests compare with, never nearer than what was drawn.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
  * MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
@@ -1056,9 +1058,7 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
  * null or can be written for width times height floats.
  */
-MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc,
-                                       float *out,
-                                       int32_t flip_y);
+MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc, float *out, int32_t flip_y);
 
 /**
  * As MOC_ComputePixelDepthBuffer, with the length of `out` in floats.

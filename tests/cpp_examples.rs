@@ -72,8 +72,9 @@ fn conventions() {
         let others = [
             ("Vulkan's matrix as it is", "outside"),
             ("x, y, z, 1 with the default layout", "outside"),
-            ("a box around the eye, fronts only", "outside"),
-            ("a box around the eye, both sides", "visible"),
+            ("a box around the eye, fronts", "outside"),
+            ("a box around the eye, both sides", "occluded"),
+            ("a box around the eye, TestRect", "visible"),
             ("orthographic, w as it is", "visible"),
             ("orthographic, depth from z, behind", "occluded"),
             ("orthographic, depth from z, in front", "visible"),

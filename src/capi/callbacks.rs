@@ -9,8 +9,8 @@ use super::types::{MOC_AlignedAlloc, MOC_AlignedFree};
 use crate::MaskedOcclusionCulling;
 
 /// Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
-/// allocator. They can be called, and given to other objects, also after this one is destroyed. None of the two pointers may
-/// be null.
+/// allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+/// may be null.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///

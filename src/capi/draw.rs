@@ -6,7 +6,7 @@ use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
 use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
 
-/// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for 32x8 pixels.
+/// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///

@@ -14,9 +14,9 @@ use crate::{Error, MaskedOcclusionCulling};
 /// triangle that faces the eye touches a pixel, or there is none; MOC_VISIBLE also for triangles with a NaN or infinite
 /// coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
 ///
-/// Where the eye may be inside of what is tested, as with boxes around objects, pass MOC_BACKFACE_NONE: all that it
-/// sees of them faces away. Where the near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the
-/// eye within the view are MOC_VISIBLE.
+/// The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
+/// or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
+/// near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
 ///
 /// Errors: as MOC_RenderTriangles.
 ///
@@ -135,8 +135,8 @@ pub unsafe extern "C" fn MOC_TestRect(
 }
 
 /// Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
-/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. They are the
-/// depths that tests compare with, which are never nearer than what was drawn.
+/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
+/// depths are those that tests compare with, never nearer than what was drawn.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
 /// MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
