@@ -6,7 +6,9 @@
  *
  * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is
  * 1/w: 0 is infinitely far, larger is nearer. The same triangle is drawn by the same pixels on every
- * instruction set.
+ * instruction set. docs/conventions.md has matrices, vertex layouts, Direct3D, OpenGL and Vulkan worked out;
+ * docs/migrating.md all that differs from the library that this header stands in for. The head of
+ * masked_occlusion_culling.h says more of units, ranges, and who owns what.
  *
  * Wrong input. Pointers must be null or valid. Where an argument is refused (a null pointer that has to name
  * something, a negative count, a size outside of 1 to 16384, a missing buffer, an enumeration without that
@@ -39,7 +41,7 @@
  * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
- *                   0 (default): GetStatistics answers zeros.
+ *                   0 (default): GetStatistics answers zeros, but for mNumDroppedTriangles.
  *
  * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
@@ -204,7 +206,8 @@ public:
         float *mPtr;                /**< 9 floats a triangle */
     };
 
-    /** Counts since the object was made with ENABLE_STATS 1, the same on every instruction set. */
+    /** Counts since the object was made with ENABLE_STATS 1 (without: of dropped triangles only), the same on every
+     * instruction set. */
     struct OcclusionCullingStatistics
     {
         struct
@@ -280,7 +283,10 @@ public:
         outBinHeight = h;
     }
 
-    /** The near plane, in clip-space w. The default is 0. NaN and infinities are refused. */
+    /**
+     * The near plane, in clip-space w, for calls with CLIP_PLANE_NEAR. With 0, the default, occludees that reach behind
+     * the eye are visible. NaN and infinities are refused.
+     */
     void SetNearClipPlane(float nearDist) { MOC_SetNearClipPlane(this, nearDist); }
 
     /** The near plane, in clip-space w. */
@@ -294,7 +300,7 @@ public:
     /** Sets every pixel infinitely far. */
     void ClearBuffer() { MOC_ClearBuffer(this); }
 
-    /** Afterwards this buffer hides what either hid. Another size or y direction is refused. */
+    /** Afterwards this buffer hides what either hid, and never more. Another size or y direction is refused. */
     void MergeBuffer(MaskedOcclusionCulling *BufferB) { MOC_MergeBuffer(this, BufferB); }
 
     /** Folds several buffers into this one: the result of MergeBuffer one by one, but faster. */
@@ -304,8 +310,8 @@ public:
     }
 
     /**
-     * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view or
-     * faces away, else VISIBLE.
+     * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view,
+     * faces away or is dropped, else VISIBLE.
      *
      * modelToClipMatrix (null: the vertices are in clip space): 16 floats m,
      *     x' = x*m[0] + y*m[4] + z*m[8] + m[12],
@@ -325,7 +331,8 @@ public:
     }
 
     /**
-     * Tests a rectangle in normalised device coordinates whose nearest point is at wmin, in clip-space w.
+     * Tests a rectangle in normalised device coordinates (x/w, y/w, y up) whose nearest point is at wmin, in
+     * clip-space w; docs/conventions.md makes one of a box. Pass 0 for what reaches through the near plane.
      * VISIBLE when some of it is nearer than what was drawn, or at the same depth; VIEW_CULLED when it lies off
      * screen; VISIBLE, too, for a NaN, for wmin <= 0 and for an empty rectangle (a minimum above its maximum).
      */
@@ -340,6 +347,8 @@ public:
      * Tests occludees: VISIBLE when some part is nearer than what was drawn, or at the same depth. VIEW_CULLED
      * when no triangle that faces the eye touches a pixel. The arguments are those of RenderTriangles: with a
      * matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third offset names z: pass (16, 4, 8) or (12, 4, 8).
+     * The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
+     * holds the eye, for visible.
      */
     CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                 const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,

@@ -1,12 +1,88 @@
 /*
  * CPU occlusion culling on a masked hierarchical depth buffer: the C interface.
  *
- * Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is 1/w: 0 is
- * infinitely far, larger is nearer. Enumerations are passed as int32_t and checked. Every function returns
- * a MOC_Status unless it says otherwise.
+ * Draw a few large occluders into a small depth buffer, then ask for each object whether any of it could be
+ * seen. "Occluded" is certain; "visible" means that it may be seen.
  *
- * Threads: functions that take a const object may run at once on several threads, while no other function
- * uses that object; MOC_RenderTrilist, which draws, says what it asks for. Different objects are independent.
+ * A frame
+ *
+ *     #include "masked_occlusion_culling.h"
+ *     #include <stdio.h>
+ *
+ *     int main(void)
+ *     {
+ *         // Once: an object, its buffer, and the camera's near plane.
+ *         MaskedOcclusionCulling *moc;
+ *         if (MOC_Create(NULL, &moc) != MOC_STATUS_OK || MOC_SetResolution(moc, 640, 360) != MOC_STATUS_OK)
+ *             return 1;
+ *         MOC_SetNearClipPlane(moc, 0.1f);
+ *
+ *         // Each frame: clear, draw occluders, test occludees. A wall at distance 10, as x, y, z, w in clip space.
+ *         const float wall[] = {-5, -5, 0, 10, 5, -5, 0, 10, 5, 5, 0, 10, -5, 5, 0, 10};
+ *         const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+ *         MOC_ClearBuffer(moc);
+ *         MOC_RenderTriangles(moc, wall, triangles, 2, NULL, MOC_BACKFACE_CW, MOC_CLIP_PLANE_ALL, NULL, NULL);
+ *
+ *         // An object whose box on the screen is a fifth of its width and height, and whose nearest point is at 12.
+ *         int32_t result;
+ *         MOC_TestRect(moc, -0.2f, -0.2f, 0.2f, 0.2f, 12, &result);
+ *         puts(result == MOC_VISIBLE ? "draw it" : "hidden");
+ *
+ *         MOC_Destroy(moc);
+ *         return 0;
+ *     }
+ *
+ * Order of calls. Once: MOC_DefaultSettings, MOC_Create, MOC_SetResolution, MOC_SetNearClipPlane. Each frame:
+ * MOC_ClearBuffer, then draws and tests, in any order and as often as wanted. A test answers from what is drawn
+ * by then, so draw first what is near and large. At the end: pools first (MOC_ThreadpoolDestroy), then MOC_Destroy.
+ *
+ * Units
+ *   clip space   (x, y, w): x right, y up, w away from the eye and positive in view. z is not looked at. On the
+ *                screen is what has -w <= x <= w and -w <= y <= w.
+ *   NDC          normalised device coordinates: x/w and y/w, the screen is -1 to 1, y up. For MOC_TestRect.
+ *   w            near planes and `wmin` are distances in clip-space w, in the program's own unit of length.
+ *   depth        1/w: 0 is infinitely far, larger is nearer. Negative where nothing was drawn.
+ *   pixels       columns from the left, rows from the top, or from the bottom with MOC_Y_AXIS_UP. A draw covers the
+ *                pixels whose centres are inside, on vertices rounded to 1/256 pixel, by the top-left rule; a test
+ *                covers every pixel that is touched.
+ *   counts       `n_triangles` counts triangles, `vertex_floats` and `out_floats` floats; strides and offsets are
+ *                bytes.
+ *
+ * Ranges
+ *   buffers      1 to 16384 pixels wide and high.
+ *   w            2^-30 to 2^40. What is nearer is cut off. An occluder's triangle with a corner that is farther is
+ *                dropped, an occludee with one counts as visible.
+ *   x, y         any finite number. A NaN or an infinity drops an occluder's triangle, and makes an occludee visible.
+ *   triangles    0 to INT32_MAX a call; indices have 32 bits and no sign.
+ *
+ * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion and MOC_StatusText. Where it is not
+ * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
+ * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
+ * passed as int32_t and checked.
+ *
+ * Null. A pointer may be null where the function says so. Where it may not, null is refused with
+ * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
+ * "Required" of a function says what has to hold, and without it the behaviour is undefined. Where it says "null or",
+ * null does no harm; whether it is refused is said above it. Indices are trusted, too; functions whose names end in
+ * Checked take the length of the array, and look at every one.
+ *
+ * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
+ * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
+ * returns, with three exceptions: vertices and indices of MOC_ThreadpoolRenderTriangles, and the objects of
+ * MOC_ThreadpoolMergeBuffers, stay as they are until MOC_ThreadpoolFlush (matrix and layout are copied); the object that
+ * a pool draws into lives as long as the pool, or until it gets another; and the callbacks of MOC_Settings are called
+ * until the object is destroyed.
+ *
+ * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
+ * const object may run at once on several threads while no function that takes it without const does. One of them
+ * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once.
+ *
+ * Where to go from here
+ *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
+ *   docs/migrating.md       for programs that use Intel's MaskedOcclusionCulling
+ *   docs/recordings.md      recorded frames
+ *   cpp-examples/           programs in C and C++
+ *   MaskedOcclusionCulling.h, CullingThreadpool.h, FrameRecorder.h     the same for C++
  *
  * Generated by cbindgen from src/capi: do not edit. SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -370,8 +446,9 @@ typedef struct MOC_Recording MOC_Recording;
 typedef struct MOC_Threadpool MOC_Threadpool;
 
 /**
- * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it); null
- * when there is no memory. Called from any thread that uses the object; must not throw.
+ * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
+ * for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
+ * that uses the object; must not throw.
  */
 typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
 
@@ -407,7 +484,8 @@ typedef struct MOC_Settings {
      */
     int32_t statistics;
     /**
-     * Where all memory of the object comes from. Null, together with `free`: the system. Default null.
+     * Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
+     * system. Null, together with `free`: the system. Default null.
      */
     MOC_AlignedAlloc alloc;
     /**
@@ -420,7 +498,9 @@ typedef struct MOC_Settings {
  * Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
  *
  * Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a
- * matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n).
+ * matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n); positions among other things are
+ * (sizeof(vertex), 4, 8) with a matrix, and a pointer to the first x. Nothing has to be aligned. Offsets may be negative,
+ * but for the functions whose names end in Checked.
  */
 typedef struct MOC_VertexLayout {
     /**
@@ -451,7 +531,7 @@ typedef struct MOC_TriList {
      */
     uint32_t count;
     /**
-     * 9 floats a triangle.
+     * 9 floats a triangle, of use to MOC_RenderTrilist only: x and y in 1/256 pixel and 1/w, of three corners.
      */
     float *data;
 } MOC_TriList;
@@ -533,8 +613,8 @@ typedef struct MOC_OccludeeStatistics {
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
- * instruction set.
+ * All counts of an object, if its settings ask for statistics; else that of dropped triangles alone, and zeros. The same
+ * on every instruction set.
  */
 typedef struct MOC_Statistics {
     /**
@@ -634,53 +714,61 @@ uint32_t MOC_GetAbiVersion(void);
 const char *MOC_StatusText(int32_t status);
 
 /**
- * Writes the default settings to `out`.
+ * Writes the default settings to `out`: those that MOC_Create takes for null.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * `out` is null or can be written.
  */
 MOC_Status MOC_DefaultSettings(struct MOC_Settings *out);
 
 /**
  * Makes an object without a buffer, on the best instruction set that the processor has and `settings`
- * allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults.
+ * allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
+ * caller gives the object back to MOC_Destroy.
  *
  * Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_ENUM,
  * MOC_STATUS_OUT_OF_MEMORY.
  *
- * # Safety
+ * Required:
  * `settings` is null or can be read, `out` is null or can be written. The callbacks do what
  * MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
  */
-MOC_Status MOC_Create(const struct MOC_Settings *settings, MaskedOcclusionCulling **out);
+MOC_Status MOC_Create(const struct MOC_Settings *settings,
+                      MaskedOcclusionCulling **out);
 
 /**
- * Frees the object and its buffer. Null is allowed.
+ * Frees the object and its buffer, and ends its recording. Null is allowed.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
  */
 MOC_Status MOC_Destroy(MaskedOcclusionCulling *moc);
 
 /**
- * Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it.
+ * Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
+ * already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE).
+ *
+ * It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
+ * centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY. The object keeps
  * the buffer that it had.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
  */
-MOC_Status MOC_SetResolution(MaskedOcclusionCulling *moc, uint32_t width, uint32_t height);
+MOC_Status MOC_SetResolution(MaskedOcclusionCulling *moc,
+                             uint32_t width,
+                             uint32_t height);
 
 /**
  * Writes the width and height of the buffer in pixels.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `width`
  * and `height` are null or can be written.
  */
@@ -694,7 +782,7 @@ MOC_Status MOC_GetResolution(const MaskedOcclusionCulling *moc, uint32_t *width,
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and MOC_STATUS_INVALID_SIZE for no bins or bins
  * smaller than 32 by 8: 0 by 0 is written.
  *
- * # Safety
+ * Required:
  * As MOC_GetResolution.
  */
 MOC_Status MOC_ComputeBinWidthHeight(const MaskedOcclusionCulling *moc,
@@ -704,81 +792,88 @@ MOC_Status MOC_ComputeBinWidthHeight(const MaskedOcclusionCulling *moc,
                                      uint32_t *height);
 
 /**
- * Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
+ * Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
+ * cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
+ * visible. So the camera's own near plane culls more.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity: the plane stays where
  * it was.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
  */
-MOC_Status MOC_SetNearClipPlane(MaskedOcclusionCulling *moc, float near_w);
+MOC_Status MOC_SetNearClipPlane(MaskedOcclusionCulling *moc,
+                                float near_w);
 
 /**
  * Writes the near plane, in clip-space w.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
  * null or can be written.
  */
 MOC_Status MOC_GetNearClipPlane(const MaskedOcclusionCulling *moc, float *out);
 
 /**
- * Writes the MOC_Implementation that the object uses.
+ * Writes the MOC_Implementation that the object uses, which never changes.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * As MOC_GetNearClipPlane.
  */
 MOC_Status MOC_GetImplementation(const MaskedOcclusionCulling *moc, int32_t *out);
 
 /**
- * Writes the MOC_UpdateRule that the object uses.
+ * Writes the MOC_UpdateRule that the object uses, which never changes.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * As MOC_GetNearClipPlane.
  */
 MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
 
 /**
- * The callbacks that the object was made with; where none were given, a pair that uses the system's
- * allocator. They can be called, and given to other objects.
+ * Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
+ * allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+ * may be null.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
- * `moc` is null or from MOC_Create and not destroyed. `alloc` and `free` are null or can be written.
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free` are null
+ * or can be written.
  */
 MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
                                     MOC_AlignedAlloc *alloc,
                                     MOC_AlignedFree *free);
 
 /**
- * Sets every pixel infinitely far.
+ * Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
  */
 MOC_Status MOC_ClearBuffer(MaskedOcclusionCulling *moc);
 
 /**
- * Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, conservatively. The
- * two may differ in instruction set and update rule. Merging an object with itself changes nothing.
+ * Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
+ * into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
+ * differ in instruction set and update rule. Merging an object with itself changes nothing.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH.
  *
- * # Safety
+ * Required:
  * Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
  * changes `other`.
  */
-MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCulling *other);
+MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc,
+                           const MaskedOcclusionCulling *other);
 
 /**
  * Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
@@ -786,7 +881,7 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc, const MaskedOcclusionCul
  *
  * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array: nothing is folded.
  *
- * # Safety
+ * Required:
  * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
  * thread uses `moc` meanwhile, and none changes the others.
  */
@@ -795,24 +890,28 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
                             uint32_t count);
 
 /**
- * Draws occluders.
+ * Draws occluders: from now on they hide what is behind them. Nearest first is fastest and hides most.
  *
- * `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
- * packed, 16 bytes a vertex). It may lie at any address. With `model_to_clip` (16 floats, x' = x*m[0] +
- * y*m[4] + z*m[8] + m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]) vertices are x, y, z
- * in model space, and the last offset of the layout names z: pass (16, 4, 8) or (12, 4, 8). Without it (null)
- * they are x, y, w in clip space. `triangles` holds three indices for each of
- * the `n_triangles` (0 or more). `winding` is a MOC_BackfaceWinding, `clip_planes` are MOC_ClipPlanes.
+ * - `vertices`: the x of the first vertex, at any address. Null is allowed when there are no triangles.
+ * - `triangles`: three indices a triangle. Null is allowed when there are none.
+ * - `n_triangles`: how many triangles, 0 or more.
+ * - `model_to_clip`: 16 floats m that take x, y, z of the model to clip space: x' = x*m[0] + y*m[4] + z*m[8] + m[12],
+ *   y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. That is the memory
+ *   of OpenGL's matrices and of Direct3D's (docs/conventions.md). Null: the vertices are in clip space.
+ * - `winding`: a MOC_BackfaceWinding, of the triangle as it is seen on the screen.
+ * - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right.
+ * - `layout`: where the coordinates are. Null: (16, 4, 12), x, y, z, w packed. With a matrix the last offset names z
+ *   instead of w, so that null does not fit: pass (12, 4, 8) for x, y, z, (16, 4, 8) for x, y, z and a fourth.
+ * - `result`: null is allowed. Gets MOC_VIEW_CULLED when every triangle lies outside of the view, faces away or is
+ *   dropped, or there is none; else MOC_VISIBLE.
  *
- * `result` (may be null) gets MOC_VIEW_CULLED when every triangle lies outside of the view or faces away,
- * else MOC_VISIBLE; on errors MOC_VISIBLE. Triangles with a NaN or infinite coordinate are dropped and
- * counted in the statistics.
+ * Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
  *
- * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `triangles` may be null when there are no triangles),
- * MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count, MOC_STATUS_INVALID_LAYOUT for a
- * negative stride or indices that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count,
+ * MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that are not at a multiple of 4 bytes,
+ * MOC_STATUS_NO_BUFFER.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
  * matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
  * whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
@@ -829,13 +928,13 @@ MOC_Status MOC_RenderTriangles(MaskedOcclusionCulling *moc,
                                int32_t *result);
 
 /**
- * As MOC_RenderTriangles, with the length of the vertex array in floats: an index that names a vertex
- * outside of it is an error, and nothing is drawn.
+ * As MOC_RenderTriangles, with the length of the vertex array, counted in floats from `vertices` on: an index that names a
+ * vertex that does not lie whole within it is an error, and nothing is drawn.
  *
  * Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT for a
  * negative offset too.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `vertices` can be
  * read for `vertex_floats` floats, and so can the indices, the matrix and the layout.
  */
@@ -851,7 +950,8 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
                                       int32_t *result);
 
 /**
- * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere).
+ * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
+ * use to objects of the resolution and MOC_YAxis of the one that filled it.
  *
  * The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
  * rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one
@@ -861,7 +961,7 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
  * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
  * its `capacity`; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
  * rectangle of it, and none queries, merges, clears or resizes it. `list` can be read, its `data` for
  * 9 * `count` floats.
@@ -875,13 +975,17 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
  * same depth?
  *
  * The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
- * those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
- * triangle that faces the eye touches a pixel; MOC_VISIBLE also for triangles with a NaN or infinite
- * coordinate, and on errors. Several threads may test at once.
+ * those whose centre it covers. `result` (null is allowed) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
+ * triangle that faces the eye touches a pixel, or there is none; MOC_VISIBLE also for triangles with a NaN or infinite
+ * coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
+ *
+ * The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
+ * or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
+ * near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
  *
  * Errors: as MOC_RenderTriangles.
  *
- * # Safety
+ * Required:
  * As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
  * query `moc` meanwhile.
  */
@@ -901,7 +1005,7 @@ MOC_Status MOC_TestTriangles(const MaskedOcclusionCulling *moc,
  *
  * Errors: as MOC_RenderTrianglesChecked.
  *
- * # Safety
+ * Required:
  * As MOC_RenderTrianglesChecked, but other threads may query `moc` meanwhile.
  */
 MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
@@ -916,17 +1020,21 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
                                     int32_t *result);
 
 /**
- * Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest
- * point is at `wmin`, in clip-space w. Every pixel that it touches counts, and is visible where the rectangle
- * is nearer, or at the same depth.
+ * Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
+ * a box.
  *
- * `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a number is NaN, `wmin` is not
- * positive or the rectangle is empty (a minimum above its maximum), and on errors. Several threads may test at
- * once.
+ * - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever the
+ *   MOC_YAxis). They may lie off screen, infinities included. Every pixel that is touched counts.
+ * - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
+ * - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
+ *   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
+ *   a minimum is above its maximum, and on errors.
+ *
+ * Several threads may test at once.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `result` is
  * null or can be written.
  */
@@ -940,12 +1048,13 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
 
 /**
  * Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
- * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first.
+ * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
+ * depths are those that tests compare with, never nearer than what was drawn.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
  * MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
  *
- * # Safety
+ * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
  * null or can be written for width times height floats.
  */
@@ -956,7 +1065,7 @@ MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc, float 
  *
  * Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE where `out` is too short.
  *
- * # Safety
+ * Required:
  * As MOC_ComputePixelDepthBuffer, where `out` can be written for `out_floats` floats.
  */
 MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
@@ -965,29 +1074,31 @@ MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
                                               int32_t flip_y);
 
 /**
- * Writes what was counted since the object was made.
+ * Writes what was counted since the object was made; nothing sets the counts back.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
- * `moc` is null or from MOC_Create and not destroyed. `out` is null or can be written.
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
+ * written.
  */
-MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc, struct MOC_Statistics *out);
+MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
+                             struct MOC_Statistics *out);
 
 /**
  * Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be
  * drawn by MOC_RenderTrilist. Nothing is drawn.
  *
- * `lists` are `bins_w` times `bins_h` lists, row by row; the bins are those of MOC_ComputeBinWidthHeight.
- * The other arguments are those of MOC_RenderTriangles. `result` (may be null) gets MOC_VIEW_CULLED when
- * no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may bin at once, into
- * lists of their own.
+ * `lists` are `bins_w` times `bins_h` lists, row by row, which the caller has given memory and a `count`, 0 at first; the
+ * bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of MOC_RenderTriangles. `result` (null is
+ * allowed) gets MOC_VIEW_CULLED when no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may
+ * bin at once, into lists of their own.
  *
  * Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
  * a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
  * alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
  *
- * # Safety
+ * Required:
  * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
  * written for `bins_w` times `bins_h` lists, and the `data` of each for 9 * `capacity` floats; nobody else uses
  * them meanwhile.
@@ -1011,7 +1122,7 @@ MOC_Status MOC_BinTriangles(const MaskedOcclusionCulling *moc,
  *
  * Errors: as MOC_BinTriangles and MOC_RenderTrianglesChecked.
  *
- * # Safety
+ * Required:
  * As MOC_BinTriangles, where `vertices` can be read for `vertex_floats` floats, whatever the indices.
  */
 MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
@@ -1030,7 +1141,8 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
 
 /**
  * Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
- * writes them to `out` as packed x, y, z, w, 16 bytes a vertex.
+ * writes them to `out` as packed x, y, z, w, 16 bytes a vertex: what draws and tests without a matrix take. With the
+ * matrix they give the same bits, and need no second array. No object is used.
  *
  * `vertices` points to the x of the first; `layout` says where the others are (null: x, y, z packed, 12
  * bytes a vertex), its last offset names z. All pointers may lie at any address.
@@ -1038,7 +1150,7 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
  * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
  * MOC_STATUS_INVALID_LAYOUT for a negative stride.
  *
- * # Safety
+ * Required:
  * `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
  * 4 * `n_vertices` floats, and does not overlap the vertices.
  */
@@ -1049,20 +1161,23 @@ MOC_Status MOC_TransformVertices(const float *matrix,
                                  const struct MOC_VertexLayout *layout);
 
 /**
- * Makes a pool of `threads` threads and writes it to `out` (null there on errors). The threads sleep until
- * MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+ * Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). The threads sleep until
+ * MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to MOC_ThreadpoolDestroy.
+ *
+ * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
+ * each mesh; MOC_ThreadpoolFlush; tests.
  *
  * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
  * thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
  * came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
  * in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
  *
- * Several threads may submit and query at once.
+ * Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` above 1024,
  * MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
  *
- * # Safety
+ * Required:
  * `out` is null or can be written.
  */
 MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
@@ -1075,7 +1190,7 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
  * Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
  * allowed.
  *
- * # Safety
+ * Required:
  * `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
  * last MOC_ThreadpoolFlush can still be read, and the object is still there.
  */
@@ -1086,7 +1201,7 @@ MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
  */
 MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
@@ -1097,7 +1212,7 @@ MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads.
  */
 MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
@@ -1108,7 +1223,7 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads.
  */
 MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
@@ -1119,7 +1234,7 @@ MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
  * the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
  * calls the pool.
@@ -1132,37 +1247,40 @@ MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
  *
  * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads.
  */
 MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32_t width, uint32_t height);
 
 /**
- * Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+ * Sets the near plane of the calls that follow, and of the object, as MOC_SetNearClipPlane does.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads.
  */
 MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, float near);
 
 /**
- * Sets the matrix of the calls that follow, which is copied; null: none. Threads that submit share it.
+ * Sets the matrix of the calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+ * vertices are in clip space. Threads that submit share it.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
  */
-MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool, const float *model_to_clip);
+MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool,
+                                   const float *model_to_clip);
 
 /**
- * Sets the vertex layout of the calls that follow; null: x, y, z, w packed. Threads that submit share it.
+ * Sets the vertex layout of the calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix: with one
+ * the last offset names z. Threads that submit share it.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
  */
 MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
@@ -1173,7 +1291,7 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads.
  */
 MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
@@ -1184,7 +1302,7 @@ MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
  *
  * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
  * are until MOC_ThreadpoolFlush.
  */
@@ -1200,7 +1318,7 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
  *
  * Errors: as there.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
  */
 MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
@@ -1216,7 +1334,7 @@ MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
  *
  * Errors: as there.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
  */
 MOC_Status MOC_ThreadpoolTestTriangles(const struct MOC_Threadpool *pool,
@@ -1232,7 +1350,7 @@ MOC_Status MOC_ThreadpoolTestTriangles(const struct MOC_Threadpool *pool,
  *
  * Errors: as there.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
  */
 MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *pool,
@@ -1245,7 +1363,7 @@ MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *po
  *
  * Errors: as there; nothing is folded.
  *
- * # Safety
+ * Required:
  * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
  * until MOC_ThreadpoolFlush.
  */
@@ -1260,8 +1378,9 @@ MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
  *
- * # Safety
- * `moc` is null or from MOC_Create and not destroyed; `path` is null or ends with a zero.
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
+ * a zero.
  */
 MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
                              const char *path);
@@ -1271,8 +1390,8 @@ MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
  *
- * # Safety
- * `moc` is null or from MOC_Create and not destroyed.
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile.
  */
 MOC_Status MOC_RecorderStop(const MaskedOcclusionCulling *moc);
 
@@ -1283,7 +1402,7 @@ MOC_Status MOC_RecorderStop(const MaskedOcclusionCulling *moc);
  *
  * Errors: those of MOC_RenderTriangles; nothing is recorded.
  *
- * # Safety
+ * Required:
  * That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
  */
 MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
@@ -1297,11 +1416,12 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
                                      int32_t result);
 
 /**
- * Reads a recording and writes it to `out` (null there on errors).
+ * Reads a recording and writes it to `out` (null there on errors). The caller gives it back to MOC_RecordingDestroy.
+ * Several threads may read from one recording at once.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
  *
- * # Safety
+ * Required:
  * `path` is null or ends with a zero, `out` is null or can be written.
  */
 MOC_Status MOC_RecordingLoad(const char *path,
@@ -1312,7 +1432,7 @@ MOC_Status MOC_RecordingLoad(const char *path,
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
  *
- * # Safety
+ * Required:
  * `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
  */
 MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC_Recording **out);
@@ -1320,7 +1440,7 @@ MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC
 /**
  * Frees a recording. Null is allowed.
  *
- * # Safety
+ * Required:
  * `recording` is null or from MOC_RecordingLoad or MOC_RecordingFromMemory, and not destroyed.
  */
 MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
@@ -1330,17 +1450,18 @@ MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
- * # Safety
+ * Required:
  * `recording` is null or a live one, `out` is null or can be written.
  */
 MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording, struct MOC_RecordingInfo *out);
 
 /**
- * Writes the call number `index` to `out`.
+ * Writes the call number `index` to `out`, counted from 0. What its pointers name belongs to the recording and lives as
+ * long.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
  *
- * # Safety
+ * Required:
  * `recording` is null or a live one, `out` is null or can be written.
  */
 MOC_Status MOC_RecordingGetCall(const struct MOC_Recording *recording,

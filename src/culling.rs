@@ -219,6 +219,9 @@ impl MaskedOcclusionCulling {
     /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer
     /// to the eye than can be projected.
     ///
+    /// The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
+    /// holds the eye, for visible.
+    ///
     /// # Errors
     /// As [`Self::render_triangles`].
     pub fn test_triangles(

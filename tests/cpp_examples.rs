@@ -64,6 +64,62 @@ fn plain_c() {
     }
 }
 
+#[test]
+fn conventions() {
+    let asked = "occluded visible visible visible outside visible";
+    for output in outputs("conventions.cpp") {
+        let answers: Vec<(&str, &str)> = output.lines().filter_map(|line| line.rsplit_once(": ")).collect();
+        let others = [
+            ("Vulkan's matrix as it is", "outside"),
+            ("x, y, z, 1 with the default layout", "outside"),
+            ("a box around the eye, fronts", "outside"),
+            ("a box around the eye, both sides", "occluded"),
+            ("a box around the eye, TestRect", "visible"),
+            ("orthographic, w as it is", "visible"),
+            ("orthographic, depth from z, behind", "occluded"),
+            ("orthographic, depth from z, in front", "visible"),
+        ];
+        for other in others {
+            assert!(answers.contains(&other), "{other:?}: {output}");
+        }
+        assert_eq!(answers.iter().filter(|(_, answer)| *answer == asked).count(), 14, "{output}");
+        assert_eq!(answers.len(), 14 + others.len(), "{output}");
+    }
+}
+
+/// Every piece of C++ in docs/conventions.md is in the program, letter for letter.
+#[test]
+fn the_conventions_are_quoted_exactly() {
+    let read = |path: &str| std::fs::read_to_string(native::root().join(path)).expect(path).replace("\r\n", "\n");
+    let (document, program) = (read("docs/conventions.md"), read("cpp-examples/conventions.cpp"));
+    // A quotation may begin deeper than its first column; lines are compared without what they are indented by.
+    let plain = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
+    let program = plain(&program);
+    let quotes: Vec<&str> = document.split("```cpp\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(quotes.len() > 6, "only {} quotations", quotes.len());
+    for quote in quotes {
+        assert!(program.contains(plain(quote).trim_end()), "not in the program:\n{quote}");
+    }
+}
+
+/// The frame that the C header begins with compiles without a warning, runs, and finds what it should.
+#[test]
+fn the_frame_in_the_header() {
+    let header =
+        std::fs::read_to_string(native::root().join("include/masked_occlusion_culling.h")).expect("the header");
+    let code = header.lines().skip_while(|line| !line.contains("#include \"masked_occlusion_culling.h\""));
+    let code: Vec<&str> = code.take_while(|line| *line != " */").map(|l| l.trim_start_matches(" *")).collect();
+    let end = code.iter().position(|line| *line == "     }").expect("the end of main");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let source = folder.path().join("frame.c");
+    std::fs::write(&source, code[..=end].join("\n") + "\n").expect("the program is written");
+    for link in [Link::Static, Link::Shared] {
+        let program = compile(&source.display().to_string(), link, &[], folder.path());
+        let output = native::run(&mut Command::new(program)).unwrap_or_else(|e| panic!("{link:?}: {e}"));
+        assert_eq!(output.trim(), "hidden", "{output}");
+    }
+}
+
 /// The demo's program on a scene of three boxes that are faces only: one hides another, the third stands beside.
 #[test]
 fn demo_culls_what_is_behind() {

@@ -114,3 +114,17 @@ fn what_is_not_finite_is_outside_of_nothing() {
         assert_eq!(answer, Ok(CullingResult::Visible), "{bad}");
     }
 }
+
+/// Farther than 2^40 an occluder is dropped and counted, and of an occludee nothing is known.
+#[test]
+fn what_is_too_far_is_dropped_or_visible() {
+    let mut moc = object(UpdateRule::ThreeLayer, 64, 48);
+    let wall = |w: f32| [[-w, -w, 0.0, w], [3.0 * w, -w, 0.0, w], [-w, 3.0 * w, 0.0, w]];
+    let far = wall(2.0 * (1_u64 << 40) as f32);
+    moc.render_triangles(Vertices::from_clip_space(&far), &[0, 1, 2], &BOTH_SIDES).unwrap();
+    assert_eq!(moc.statistics().occluders.num_dropped_triangles, 1);
+    moc.render_triangles(Vertices::from_clip_space(&wall(1.0)), &[0, 1, 2], &BOTH_SIDES).unwrap();
+    let test = |v: &[[f32; 4]]| moc.test_triangles(Vertices::from_clip_space(v), &[0, 1, 2], &BOTH_SIDES);
+    assert_eq!(test(&wall(1e6)), Ok(CullingResult::Occluded));
+    assert_eq!(test(&far), Ok(CullingResult::Visible));
+}

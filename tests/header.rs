@@ -14,7 +14,8 @@ fn generate(root: &Path) -> String {
     });
     let mut header = Vec::new();
     builder.generate().expect("cbindgen understands src/capi").write(&mut header);
-    String::from_utf8(header).expect("the header is text")
+    // Rust's heading for what the caller answers for means nothing in C.
+    String::from_utf8(header).expect("the header is text").replace(" * # Safety\n", " * Required:\n")
 }
 
 #[test]
@@ -33,6 +34,24 @@ fn the_committed_header_is_current() {
          run `UPDATE_HEADER=1 cargo test --test header` and commit it",
         differs.map_or(committed.lines().count().min(made.lines().count()), |i| i) + 1
     );
+}
+
+/// Every function says what the caller answers for, and every one that can refuse says how.
+#[test]
+fn no_function_is_without_its_paragraphs() {
+    let header = generate(Path::new(env!("CARGO_MANIFEST_DIR")));
+    assert!(!header.contains("# Safety"), "a heading of Rust's documentation is left");
+    for text in header.split("\n/**\n").filter(|text| text.contains("\n */\nMOC_Status MOC_")) {
+        let (comment, function) = text.split_once(" */\n").expect("a comment ends");
+        let name = function.split('(').next().unwrap_or(function);
+        assert!(comment.contains(" * Required:\n"), "{name} does not say what it asks for");
+        assert!(
+            comment.contains(" * Errors: ")
+                || comment.contains("Null is\n * allowed")
+                || comment.contains("Null is allowed"),
+            "{name} does not say what it refuses"
+        );
+    }
 }
 
 #[test]

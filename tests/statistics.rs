@@ -113,3 +113,16 @@ fn counts_are_what_was_asked() {
         assert_eq!(moc.statistics().occludees, tested);
     }
 }
+
+#[test]
+fn dropped_triangles_are_counted_always() {
+    let mut moc = MaskedOcclusionCulling::default();
+    moc.set_resolution(64, 16).unwrap();
+    let wall = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0], [f32::NAN; 4]];
+    moc.render_triangles(Vertices::from_clip_space(&wall), &[0, 1, 2, 0, 1, 3], &DrawOptions::default()).unwrap();
+    moc.test_rect(-1.0, -1.0, 1.0, 1.0, 2.0).unwrap();
+    let all = moc.statistics();
+    assert_eq!(all.occluders.num_dropped_triangles, 1);
+    assert_eq!((all.occluders.num_processed_triangles, all.occluders.num_tiles_updated), (0, 0));
+    assert_eq!(all.occludees.num_processed_rectangles, 0);
+}

@@ -16,10 +16,10 @@ struct BinArguments {
 /// Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be
 /// drawn by MOC_RenderTrilist. Nothing is drawn.
 ///
-/// `lists` are `bins_w` times `bins_h` lists, row by row; the bins are those of MOC_ComputeBinWidthHeight.
-/// The other arguments are those of MOC_RenderTriangles. `result` (may be null) gets MOC_VIEW_CULLED when
-/// no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may bin at once, into
-/// lists of their own.
+/// `lists` are `bins_w` times `bins_h` lists, row by row, which the caller has given memory and a `count`, 0 at first; the
+/// bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of MOC_RenderTriangles. `result` (null is
+/// allowed) gets MOC_VIEW_CULLED when no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may
+/// bin at once, into lists of their own.
 ///
 /// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
 /// a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its

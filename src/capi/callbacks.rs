@@ -8,13 +8,15 @@ use super::status::{MOC_Status, guard};
 use super::types::{MOC_AlignedAlloc, MOC_AlignedFree};
 use crate::MaskedOcclusionCulling;
 
-/// The callbacks that the object was made with; where none were given, a pair that uses the system's
-/// allocator. They can be called, and given to other objects.
+/// Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
+/// allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+/// may be null.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed. `alloc` and `free` are null or can be written.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free` are null
+/// or can be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_GetAllocFreeCallback(
     moc: *const MaskedOcclusionCulling,

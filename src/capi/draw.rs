@@ -6,7 +6,7 @@ use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
 use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
 
-/// Sets every pixel infinitely far.
+/// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///
@@ -18,8 +18,9 @@ pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MO
     guard(|| unsafe { object_mut(moc) }?.clear_buffer())
 }
 
-/// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, conservatively. The
-/// two may differ in instruction set and update rule. Merging an object with itself changes nothing.
+/// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
+/// into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
+/// differ in instruction set and update rule. Merging an object with itself changes nothing.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH.
 ///
@@ -65,22 +66,26 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
     })
 }
 
-/// Draws occluders.
+/// Draws occluders: from now on they hide what is behind them. Nearest first is fastest and hides most.
 ///
-/// `vertices` points to the x of the first vertex; `layout` says where the others are (null: x, y, z, w
-/// packed, 16 bytes a vertex). It may lie at any address. With `model_to_clip` (16 floats, x' = x*m[0] +
-/// y*m[4] + z*m[8] + m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]) vertices are x, y, z
-/// in model space, and the last offset of the layout names z: pass (16, 4, 8) or (12, 4, 8). Without it (null)
-/// they are x, y, w in clip space. `triangles` holds three indices for each of
-/// the `n_triangles` (0 or more). `winding` is a MOC_BackfaceWinding, `clip_planes` are MOC_ClipPlanes.
+/// - `vertices`: the x of the first vertex, at any address. Null is allowed when there are no triangles.
+/// - `triangles`: three indices a triangle. Null is allowed when there are none.
+/// - `n_triangles`: how many triangles, 0 or more.
+/// - `model_to_clip`: 16 floats m that take x, y, z of the model to clip space: x' = x*m[0] + y*m[4] + z*m[8] + m[12],
+///   y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. That is the memory
+///   of OpenGL's matrices and of Direct3D's (docs/conventions.md). Null: the vertices are in clip space.
+/// - `winding`: a MOC_BackfaceWinding, of the triangle as it is seen on the screen.
+/// - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right.
+/// - `layout`: where the coordinates are. Null: (16, 4, 12), x, y, z, w packed. With a matrix the last offset names z
+///   instead of w, so that null does not fit: pass (12, 4, 8) for x, y, z, (16, 4, 8) for x, y, z and a fourth.
+/// - `result`: null is allowed. Gets MOC_VIEW_CULLED when every triangle lies outside of the view, faces away or is
+///   dropped, or there is none; else MOC_VISIBLE.
 ///
-/// `result` (may be null) gets MOC_VIEW_CULLED when every triangle lies outside of the view or faces away,
-/// else MOC_VISIBLE; on errors MOC_VISIBLE. Triangles with a NaN or infinite coordinate are dropped and
-/// counted in the statistics.
+/// Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `triangles` may be null when there are no triangles),
-/// MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count, MOC_STATUS_INVALID_LAYOUT for a
-/// negative stride or indices that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count,
+/// MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that are not at a multiple of 4 bytes,
+/// MOC_STATUS_NO_BUFFER.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -113,8 +118,8 @@ pub unsafe extern "C" fn MOC_RenderTriangles(
     unsafe { render(moc, mesh, result) }
 }
 
-/// As MOC_RenderTriangles, with the length of the vertex array in floats: an index that names a vertex
-/// outside of it is an error, and nothing is drawn.
+/// As MOC_RenderTriangles, with the length of the vertex array, counted in floats from `vertices` on: an index that names a
+/// vertex that does not lie whole within it is an error, and nothing is drawn.
 ///
 /// Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT for a
 /// negative offset too.
@@ -164,7 +169,8 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: 
     unsafe { guard_result(result, draw) }
 }
 
-/// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere).
+/// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
+/// use to objects of the resolution and MOC_YAxis of the one that filled it.
 ///
 /// The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
 /// rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one

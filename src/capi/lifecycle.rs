@@ -24,7 +24,7 @@ fn object_layout() -> Result<Layout, Error> {
     Ok(layout.align_to(64).map_err(|_| Error::OutOfMemory)?.pad_to_align())
 }
 
-/// Writes the default settings to `out`.
+/// Writes the default settings to `out`: those that MOC_Create takes for null.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -41,7 +41,8 @@ pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Stat
 }
 
 /// Makes an object without a buffer, on the best instruction set that the processor has and `settings`
-/// allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults.
+/// allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
+/// caller gives the object back to MOC_Destroy.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_ENUM,
 /// MOC_STATUS_OUT_OF_MEMORY.
@@ -85,7 +86,7 @@ pub unsafe extern "C" fn MOC_Create(
     })
 }
 
-/// Frees the object and its buffer. Null is allowed.
+/// Frees the object and its buffer, and ends its recording. Null is allowed.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -104,7 +105,11 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
     })
 }
 
-/// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it.
+/// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
+/// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE).
+///
+/// It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
+/// centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY. The object keeps
 /// the buffer that it had.
@@ -177,7 +182,9 @@ unsafe fn write_size(width: *mut u32, height: *mut u32, size: Result<(u32, u32),
     size.map(|_| ())
 }
 
-/// Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
+/// Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
+/// cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
+/// visible. So the camera's own near plane culls more.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity: the plane stays where
 /// it was.
@@ -203,7 +210,7 @@ pub unsafe extern "C" fn MOC_GetNearClipPlane(moc: *const MaskedOcclusionCulling
     guard(|| unsafe { get(moc, out, MaskedOcclusionCulling::near_clip_plane) })
 }
 
-/// Writes the MOC_Implementation that the object uses.
+/// Writes the MOC_Implementation that the object uses, which never changes.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -215,7 +222,7 @@ pub unsafe extern "C" fn MOC_GetImplementation(moc: *const MaskedOcclusionCullin
     guard(|| unsafe { get(moc, out, |m| m.implementation() as i32) })
 }
 
-/// Writes the MOC_UpdateRule that the object uses.
+/// Writes the MOC_UpdateRule that the object uses, which never changes.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///

@@ -65,15 +65,18 @@ unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, 
     unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
 }
 
-/// Makes a pool of `threads` threads and writes it to `out` (null there on errors). The threads sleep until
-/// MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+/// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). The threads sleep until
+/// MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to MOC_ThreadpoolDestroy.
+///
+/// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
+/// each mesh; MOC_ThreadpoolFlush; tests.
 ///
 /// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
 /// thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
 /// came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
 /// in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
 ///
-/// Several threads may submit and query at once.
+/// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` above 1024,
 /// MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
@@ -201,7 +204,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     guard(|| unsafe { handle(pool) }?.pool.set_resolution(width, height))
 }
 
-/// Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+/// Sets the near plane of the calls that follow, and of the object, as MOC_SetNearClipPlane does.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
 ///
@@ -213,7 +216,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadp
     guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
 }
 
-/// Sets the matrix of the calls that follow, which is copied; null: none. Threads that submit share it.
+/// Sets the matrix of the calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+/// vertices are in clip space. Threads that submit share it.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool.
 ///
@@ -229,7 +233,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, mo
     })
 }
 
-/// Sets the vertex layout of the calls that follow; null: x, y, z, w packed. Threads that submit share it.
+/// Sets the vertex layout of the calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix: with one
+/// the last offset names z. Threads that submit share it.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
 ///

@@ -10,9 +10,13 @@ use crate::{Error, MaskedOcclusionCulling};
 /// same depth?
 ///
 /// The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
-/// those whose centre it covers. `result` (may be null) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
-/// triangle that faces the eye touches a pixel; MOC_VISIBLE also for triangles with a NaN or infinite
-/// coordinate, and on errors. Several threads may test at once.
+/// those whose centre it covers. `result` (null is allowed) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
+/// triangle that faces the eye touches a pixel, or there is none; MOC_VISIBLE also for triangles with a NaN or infinite
+/// coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
+///
+/// The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
+/// or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
+/// near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
 ///
 /// Errors: as MOC_RenderTriangles.
 ///
@@ -94,13 +98,17 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: 
     unsafe { guard_result(result, query) }
 }
 
-/// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest
-/// point is at `wmin`, in clip-space w. Every pixel that it touches counts, and is visible where the rectangle
-/// is nearer, or at the same depth.
+/// Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
+/// a box.
 ///
-/// `result` gets MOC_VIEW_CULLED when it lies off screen; MOC_VISIBLE when a number is NaN, `wmin` is not
-/// positive or the rectangle is empty (a minimum above its maximum), and on errors. Several threads may test at
-/// once.
+/// - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever the
+///   MOC_YAxis). They may lie off screen, infinities included. Every pixel that is touched counts.
+/// - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
+/// - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
+///   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
+///   a minimum is above its maximum, and on errors.
+///
+/// Several threads may test at once.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///
@@ -127,7 +135,8 @@ pub unsafe extern "C" fn MOC_TestRect(
 }
 
 /// Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
-/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first.
+/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
+/// depths are those that tests compare with, never nearer than what was drawn.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
 /// MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
@@ -183,12 +192,13 @@ unsafe fn depth(
     moc.compute_pixel_depth_buffer(unsafe { slice_mut(out, pixels) }?, flip_y)
 }
 
-/// Writes what was counted since the object was made.
+/// Writes what was counted since the object was made; nothing sets the counts back.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed. `out` is null or can be written.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, out: *mut MOC_Statistics) -> MOC_Status {
     guard(|| {

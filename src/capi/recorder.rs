@@ -82,7 +82,8 @@ pub struct MOC_RecordedCall {
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed; `path` is null or ends with a zero.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
+/// a zero.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
@@ -94,7 +95,7 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
@@ -148,7 +149,8 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
     })
 }
 
-/// Reads a recording and writes it to `out` (null there on errors).
+/// Reads a recording and writes it to `out` (null there on errors). The caller gives it back to MOC_RecordingDestroy.
+/// Several threads may read from one recording at once.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
 ///
@@ -218,7 +220,8 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
     })
 }
 
-/// Writes the call number `index` to `out`.
+/// Writes the call number `index` to `out`, counted from 0. What its pointers name belongs to the recording and lives as
+/// long.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
 ///

@@ -90,8 +90,9 @@ pub enum MOC_ClipPlanes {
     MOC_CLIP_PLANE_ALL = 0x1f,
 }
 
-/// Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it); null
-/// when there is no memory. Called from any thread that uses the object; must not throw.
+/// Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
+/// for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
+/// that uses the object; must not throw.
 pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void>;
 
 /// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
@@ -113,7 +114,8 @@ pub struct MOC_Settings {
     /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: of
     /// all counts only that of dropped triangles is kept. Default 0.
     pub statistics: i32,
-    /// Where all memory of the object comes from. Null, together with `free`: the system. Default null.
+    /// Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
+    /// system. Null, together with `free`: the system. Default null.
     pub alloc: MOC_AlignedAlloc,
     /// Takes back what `alloc` gave. Null exactly when `alloc` is.
     pub free: MOC_AlignedFree,
@@ -122,7 +124,9 @@ pub struct MOC_Settings {
 /// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
 ///
 /// Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a
-/// matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n).
+/// matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n); positions among other things are
+/// (sizeof(vertex), 4, 8) with a matrix, and a pointer to the first x. Nothing has to be aligned. Offsets may be negative,
+/// but for the functions whose names end in Checked.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_VertexLayout {
@@ -157,7 +161,7 @@ pub struct MOC_TriList {
     pub capacity: u32,
     /// How many it holds. Set it to 0 to start over.
     pub count: u32,
-    /// 9 floats a triangle.
+    /// 9 floats a triangle, of use to MOC_RenderTrilist only: x and y in 1/256 pixel and 1/w, of three corners.
     pub data: *mut f32,
 }
 
@@ -194,8 +198,8 @@ pub struct MOC_OccludeeStatistics {
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
-/// instruction set.
+/// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone, and zeros. The same
+/// on every instruction set.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_Statistics {
