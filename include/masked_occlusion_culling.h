@@ -976,7 +976,8 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
  *
  * The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
  * those whose centre it covers. `result` (null is allowed) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
- * triangle that faces the eye touches a pixel, or there is none; MOC_VISIBLE also for triangles with a NaN or infinite
+ * triangle that faces the eye touches a pixel, or there is none (MOC_OCCLUDED, too, where all pixels around those that
+ * touch none are behind what was drawn); MOC_VISIBLE also for triangles with a NaN or infinite
  * coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
  *
  * The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane

@@ -217,7 +217,8 @@ impl MaskedOcclusionCulling {
     ///
     /// Every pixel that a triangle touches counts, not only those whose centre it covers. `Visible` is
     /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer
-    /// to the eye than can be projected.
+    /// to the eye than can be projected. `ViewCulled` when no triangle that faces the eye touches a pixel, or
+    /// `Occluded` where all around those is hidden.
     ///
     /// The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
     /// holds the eye, for visible.
