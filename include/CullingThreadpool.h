@@ -50,7 +50,8 @@ public:
      * cut; there are no more than four a thread, and none is smaller than 128x64 pixels. maxJobs: batches
      * of calls that may be in flight; a caller who finds no room works until there is.
      *
-     * Where the system starts no more threads, the pool has none, and Flush does the work.
+     * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
+     * none, and Flush does the work.
      */
     CullingThreadpool(unsigned int numThreads, unsigned int binsW, unsigned int binsH, unsigned int maxJobs = 32)
     {

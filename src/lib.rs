@@ -34,6 +34,9 @@ mod transform;
 mod types;
 mod vertices;
 
+/// The matrices of [`DrawOptions`].
+pub use glam;
+
 pub use allocator::Allocator;
 pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;

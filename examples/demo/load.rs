@@ -26,7 +26,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     let mut scene = match ending.as_str() {
         "obj" => obj(reader, folder),
         "gltf" | "glb" => gltf(reader, folder),
-        _ => Err("the file is none of .obj, .gltf and .glb".into()),
+        _ => Err("the file is none of .obj, .gltf, .glb and .mocrec".into()),
     }
     .map_err(|e| format!("{}: {e}", path.display()))?;
     bar.finish_and_clear();

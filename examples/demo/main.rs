@@ -57,6 +57,9 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> Result<()> {
     if let Some(file) = args.recording() {
+        if args.record.is_some() {
+            return Err("--record needs a scene: what is played is recorded already".into());
+        }
         let (rule, isa, picture) = (args.rule, args.isa, args.out.join("depth.png"));
         return play::run(&play::Options { file, rule, isa, repeats: REPEATS, picture });
     }

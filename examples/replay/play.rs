@@ -51,7 +51,11 @@ pub fn run(options: &Options<'_>) -> crate::Result<()> {
     }
     depth_picture(&depth, recording.resolution, width as usize, height as usize).save(&options.picture)?;
     say(&format!("depths: {}", options.picture.display()));
-    if differ > 0 { Err(format!("{differ} answers differ from those recorded").into()) } else { Ok(()) }
+    if differ > 0 {
+        Err(format!("{differ} answers differ from those recorded (by another update rule? See --rule)").into())
+    } else {
+        Ok(())
+    }
 }
 
 fn implementation(isa: Isa) -> Implementation {
@@ -74,13 +78,19 @@ fn check(recording: &Recording, moc: &mut MaskedOcclusionCulling) -> crate::Resu
             if recorded != answer {
                 differ += 1;
                 if differ <= LISTED {
-                    say(&format!("  call {number}, {}: {} was {}", kind(call), name(answer), name(recorded)));
+                    say(&format!("  call {number}, {}: recorded {}, now {}", kind(call), name(recorded), name(answer)));
                 }
             }
         }
         number += 1;
     })?;
+    if differ > LISTED {
+        say(&format!("  and {} more", differ - LISTED));
+    }
     say(&format!("answers: {known} recorded, {differ} differ"));
+    if number == 0 {
+        say("it holds no call");
+    }
     Ok(differ)
 }
 
@@ -149,8 +159,8 @@ impl Content {
 impl core::fmt::Display for Content {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let &Self { resolution: (width, height), near, clears, rectangles, draws, drawn, queries, queried } = self;
-        write!(f, "{width}x{height}, near plane {near}: {clears} clears, {draws} draws of {drawn} triangles, ")?;
-        write!(f, "{queries} queries of {queried} triangles, {rectangles} rectangles")
+        write!(f, "{width}x{height}, near plane {near}: clears {clears}, draws {draws} (triangles {drawn}), ")?;
+        write!(f, "queries {queries} (triangles {queried}), rectangles {rectangles}")
     }
 }
 

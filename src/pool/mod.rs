@@ -41,6 +41,30 @@ const CALL_TRIANGLES: usize = 1536;
 /// Threads that draw into a [`MaskedOcclusionCulling`], with the bits that one thread would give.
 ///
 /// Several threads may submit and query at once; calls of one thread take effect in its order.
+///
+/// ```
+/// use masked_occlusion_culling::glam::Mat4;
+/// use masked_occlusion_culling::{CullingResult, CullingThreadpool, DrawOptions, MaskedOcclusionCulling, Vertices};
+///
+/// let mut culling = MaskedOcclusionCulling::default();
+/// culling.set_resolution(640, 360)?;
+/// let pool = CullingThreadpool::new(2, 4, 4, 32)?;
+/// // The pool has the object until it hands it back.
+/// pool.set_buffer(culling);
+/// pool.wake_threads();
+///
+/// // A wall 10 before the eye, which looks along -z: w is -z.
+/// let wall = [[-20.0, -20.0, -10.0], [20.0, -20.0, -10.0], [20.0, 20.0, -10.0], [-20.0, 20.0, -10.0]];
+/// let perspective = [1.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, -0.2, 0.0];
+/// let options = DrawOptions::with_matrix(Mat4::from_cols_array(&perspective));
+/// pool.clear_buffer()?;
+/// // Returns at once; all of it is drawn when the scope ends.
+/// pool.scope(|scope| scope.render_triangles(Vertices::from_positions(&wall), &[0, 1, 2, 0, 2, 3], &options))?;
+/// assert_eq!(pool.test_rect(-0.1, -0.1, 0.1, 0.1, 12.0)?, CullingResult::Occluded);
+/// let culling = pool.take_buffer().expect("it was given");
+/// # assert!(culling.resolution().is_some());
+/// # Ok::<(), masked_occlusion_culling::Error>(())
+/// ```
 pub struct CullingThreadpool {
     crew: Arc<Crew>,
     threads: Vec<JoinHandle<()>>,

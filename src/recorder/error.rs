@@ -27,8 +27,8 @@ impl fmt::Display for RecordingError {
         match self {
             Self::NoBuffer => f.write_str("no buffer: the resolution was never set"),
             Self::Busy => f.write_str("a recording is under way already"),
-            Self::File(error) => write!(f, "the recording's file: {error}"),
-            Self::Invalid { offset, why } => write!(f, "not a recording: {why}, at byte {offset}"),
+            Self::File(error) => write!(f, "a recording cannot be made, written or read: {error}"),
+            Self::Invalid { offset, why } => write!(f, "no whole recording: {why}, at byte {offset}"),
         }
     }
 }

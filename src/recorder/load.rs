@@ -11,6 +11,27 @@ use crate::vertices::vertex_count;
 use crate::{BackfaceWinding, ClipPlanes, CullingResult, DrawOptions, Error, VertexLayout, Vertices};
 
 /// A recorded frame, or several.
+///
+/// ```
+/// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Recording, Vertices};
+///
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("frame.mocrec");
+/// let mut culling = MaskedOcclusionCulling::default();
+/// culling.set_resolution(640, 360)?;
+/// culling.recorder_start(&path)?;
+/// culling.clear_buffer()?;
+/// let wall = [[-10.0, -10.0, 0.0, 10.0], [30.0, -10.0, 0.0, 10.0], [-10.0, 30.0, 0.0, 10.0]];
+/// culling.render_triangles(Vertices::from_clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
+/// culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0)?;
+/// culling.recorder_stop()?;
+///
+/// let recording = Recording::load(&path)?;
+/// assert_eq!(recording.calls[2].result(), Some(CullingResult::Occluded));
+/// let mut again = MaskedOcclusionCulling::default();
+/// recording.play(&mut again, |call, answer| assert_eq!(answer, call.result()))?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The near plane, in clip-space w.
@@ -116,7 +137,10 @@ impl<'a> Reader<'a> {
     fn take(&mut self, len: usize) -> Result<&'a [u8], RecordingError> {
         let rest = &self.bytes[self.at..];
         if len > rest.len() {
-            return Err(RecordingError::Invalid { offset: self.at, why: "the file ends within a recording" });
+            return Err(RecordingError::Invalid {
+                offset: self.at,
+                why: "the file ends before the end marker (was the recording stopped?)",
+            });
         }
         self.at += len;
         Ok(&rest[..len])
