@@ -345,8 +345,8 @@ public:
 
     /**
      * Tests occludees: VISIBLE when some part is nearer than what was drawn, or at the same depth. VIEW_CULLED
-     * when no triangle that faces the eye touches a pixel, or OCCLUDED, where all around is hidden. The arguments are those of RenderTriangles: with a
-     * matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third offset names z: pass (16, 4, 8) or (12, 4, 8).
+     * when no triangle that faces the eye touches a pixel, or OCCLUDED, where all around is hidden. The arguments
+     * are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third offset names z: pass (16, 4, 8) or (12, 4, 8).
      * The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
      * holds the eye, for visible.
      */

@@ -1420,7 +1420,8 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
  * Reads a recording and writes it to `out` (null there on errors). The caller gives it back to MOC_RecordingDestroy.
  * Several threads may read from one recording at once.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that
+ * is empty, cut or broken.
  *
  * Required:
  * `path` is null or ends with a zero, `out` is null or can be written.

@@ -16,7 +16,7 @@ int main(void) {
     struct MaskedOcclusionCulling *moc = NULL;
     int32_t drawn, hidden, beside;
 
-    if (MOC_AbiVersion() != MOC_ABI_VERSION) {
+    if (MOC_GetAbiVersion() != MOC_ABI_VERSION) {
         fprintf(stderr, "the header and the library do not match\n");
         return 2;
     }

@@ -222,3 +222,43 @@ fn headers_compile_without_warnings() {
     }
     assert!(compiled > 0, "no compiler was found");
 }
+
+/// Each header with every switch the one way and the other, and the programs that `.ci/install-ways` installs.
+#[test]
+fn headers_compile_with_every_switch() {
+    const SWITCHES: [&str; 8] = [
+        "QUICK_MASK",
+        "USE_D3D",
+        "PRECISE_COVERAGE",
+        "USE_AVX512",
+        "CLIPPING_PRESERVES_ORDER",
+        "ENABLE_STATS",
+        "MOC_RECORDER_ENABLE",
+        "MOC_RECORDER_ENABLE_PLAYBACK",
+    ];
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let headers = folder.path().join("headers.cpp");
+    let text =
+        "#include \"CullingThreadpool.h\"\n#include \"FrameRecorder.h\"\n#include \"MaskedOcclusionCulling.h\"\n";
+    std::fs::write(&headers, text).expect("a file");
+    let check = |compiler: &str, standard: &str, defines: &[String], source: &Path| {
+        let mut command = Command::new(compiler);
+        command.arg(format!("-std={standard}")).args(STRICT).args(defines).arg("-fsyntax-only");
+        command.arg("-I").arg(native::root().join("include")).arg(source);
+        succeed(&format!("{command:?}"), &command.output().expect("a compiler"));
+    };
+    for compiler in ["g++", "clang++"] {
+        if Command::new(compiler).arg("--version").output().is_err() {
+            println!("skipped: no {compiler} here");
+            continue;
+        }
+        for standard in ["c++11", "c++17", "c++20"] {
+            for value in 0..2 {
+                check(compiler, standard, &SWITCHES.map(|switch| format!("-D{switch}={value}")), &headers);
+            }
+        }
+    }
+    let programs = native::root().join("install-tests");
+    check("cc", "c99", &[], &programs.join("engine.c"));
+    check("c++", "c++11", &[], &programs.join("engine.cpp"));
+}

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use glam::Mat4;
 use masked_occlusion_culling::{
     BackfaceWinding, ClipPlanes, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling,
-    RecordedCall, Recording, RecordingError, VertexLayout, Vertices,
+    RecordedCall, Recording, RecordingError, VertexLayout, Vertices, capi,
 };
 use std::path::{Path, PathBuf};
 
@@ -338,6 +338,27 @@ fn a_file_that_cannot_be_read_or_is_none_says_so() {
     }
 }
 
+/// Stride 0: all vertices are one, and there may be more of them than the format can count.
+#[test]
+fn a_mesh_that_is_too_large_for_the_format_ends_a_recording_that_stays_whole() {
+    let folder = Folder::new();
+    let path = folder.file("large.mocrec");
+    let moc = &mut object(16, 16);
+    moc.recorder_start(&path).unwrap();
+    moc.clear_buffer().unwrap();
+    let (vertex, triangle) = ([0.0f32, 0.0, 0.0, 1.0], [0, 1, u32::MAX]);
+    let layout = capi::MOC_VertexLayout { stride: 0, offset_y: 4, offset_zw: 12 };
+    // SAFETY: a live object; every vertex is the one that is there.
+    let status = unsafe {
+        let (vertex, triangle) = (vertex.as_ptr(), triangle.as_ptr());
+        capi::MOC_RecordRenderTriangles(moc, vertex, triangle, 1, core::ptr::null(), 0x1f, 0, &layout, -1)
+    };
+    assert_eq!(status, capi::MOC_Status::MOC_STATUS_OK);
+    moc.clear_buffer().unwrap();
+    assert!(matches!(moc.recorder_stop(), Err(RecordingError::File(_))));
+    assert_eq!(Recording::load(&path).unwrap().calls, [RecordedCall::ClearBuffer]);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told_when_the_recording_ends() {
@@ -386,16 +407,95 @@ fn what_a_pool_is_told_is_recorded_in_order() {
     }
 }
 
+/// What is asked while something is drawn is not recorded as certain, however soon it is done afterwards.
+#[test]
+fn no_answer_of_a_pool_is_recorded_that_may_be_another_one_later() {
+    let folder = Folder::new();
+    let mut random = Rng::with_seed(3);
+    let path = folder.file("pool.mocrec");
+    let wall = [[-9.0f32, -9.0, 0.0, 3.0], [9.0, -9.0, 0.0, 3.0], [0.0, 9.0, 0.0, 3.0]];
+    let (corners, asked) = ([0, 1, 2], [0, 1, 2].repeat(2000));
+    let behind = wall.map(|[x, y, z, _]| [x / 9.0, y / 9.0, z, 9.0]);
+    let both_sides = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+    let pool = CullingThreadpool::new(1, 4, 4, 8).unwrap();
+    pool.wake_threads();
+    // Without care one of some hundreds.
+    for _ in 0..1000 {
+        let moc = object(300, 200);
+        moc.recorder_start(&path).unwrap();
+        pool.set_buffer(moc);
+        pool.clear_buffer().unwrap();
+        let meshes: Vec<_> = (0..random.usize(0..40)).map(|_| RandomMesh::new(&mut random)).collect();
+        // SAFETY: the meshes live until the object is taken back, which flushes.
+        unsafe {
+            for mesh in &meshes {
+                pool.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options).unwrap();
+            }
+            pool.render_triangles(Vertices::from_clip_space(&wall), &corners, &both_sides).unwrap();
+        }
+        pool.test_triangles(Vertices::from_clip_space(&behind), &asked, &both_sides).unwrap();
+        let moc = pool.take_buffer().unwrap();
+        moc.recorder_stop().unwrap();
+        assert_eq!(replay(&Recording::load(&path).unwrap()).1, 0);
+    }
+}
+
+/// However threads take turns, the file has their calls in the order in which they are drawn.
+#[test]
+fn what_several_threads_submit_is_recorded_as_it_is_drawn() {
+    let folder = Folder::new();
+    let path = folder.file("threads.mocrec");
+    let wall = [[-9.0f32, -9.0, 0.0, 3.0], [9.0, -9.0, 0.0, 3.0], [0.0, 9.0, 0.0, 3.0]];
+    let both_sides = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+    // Without care one of some thousands.
+    for _ in 0..2000 {
+        let moc = object(64, 64);
+        moc.recorder_start(&path).unwrap();
+        let pool = CullingThreadpool::new(0, 1, 1, 100).unwrap();
+        pool.set_buffer(moc);
+        pool.clear_buffer().unwrap();
+        std::thread::scope(|threads| {
+            threads.spawn(|| {
+                for _ in 0..10 {
+                    // SAFETY: all of it lives until the object is taken back, which flushes.
+                    unsafe { pool.render_triangles(Vertices::from_clip_space(&wall), &[0, 1, 2], &both_sides) }
+                        .unwrap();
+                }
+            });
+            threads.spawn(|| (0..10).for_each(|_| pool.clear_buffer().unwrap()));
+        });
+        let moc = pool.take_buffer().unwrap();
+        moc.recorder_stop().unwrap();
+        let recording = Recording::load(&path).unwrap();
+        assert_eq!(recording.calls.len(), 21);
+        assert_eq!(depths(&replay(&recording).0), depths(&moc));
+    }
+}
+
+/// A call may take a byte of the file, and must not take so much memory that a small file exhausts it.
+#[test]
+fn what_a_file_takes_in_memory_is_bounded() {
+    assert!(size_of::<RecordedCall>() <= 32, "{}", size_of::<RecordedCall>());
+    let (header, bytes) = by_hand();
+    let mut clears = bytes[..header].to_vec();
+    clears.resize(header + (1 << 20), 3);
+    clears.push(0x7f);
+    assert_eq!(Recording::from_bytes(&clears).unwrap().calls.len(), 1 << 20);
+}
+
 /// Frames that the library recorded that this one stands in for, where they are at hand.
 #[test]
 fn recordings_of_others_play_with_their_answers() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");
     let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let mut played = 0;
     for path in
         entries.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "mocrec"))
     {
         let recording = Recording::load(&path).unwrap();
         let (_, differ) = replay(&recording);
         assert_eq!(differ, 0, "{} of {} calls", path.display(), recording.calls.len());
+        played += 1;
     }
+    assert!(played > 0);
 }

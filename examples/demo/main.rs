@@ -10,6 +10,7 @@ mod compiler;
 mod depth_picture;
 mod exchange;
 mod gltf_buffers;
+#[path = "../shared/image.rs"]
 mod image;
 mod load;
 #[path = "../../tests/native/mod.rs"]
@@ -17,7 +18,7 @@ mod native;
 #[path = "../shared/options.rs"]
 mod options;
 mod picture;
-#[path = "../replay/play.rs"]
+#[path = "../shared/play.rs"]
 mod play;
 mod raster;
 mod scene;

@@ -93,7 +93,7 @@ impl Family {
         let mut first: Option<(i32, T)> = None;
         for (i, &moc) in self.members.iter().enumerate() {
             let got = call(i, moc);
-            // The last status says that the library failed inside: never a right answer.
+            // Recordings, whose statuses come after that of a failure inside of the library, are not made here.
             ensure((OK..MOC_Status::MOC_STATUS_INTERNAL as i32).contains(&got.0), || {
                 format!("{name}: status {} from object {i}", got.0)
             })?;

@@ -1,8 +1,9 @@
 //! A hostile driver of the C interface: random sequences of calls with random, wrong and wicked arguments.
 //!
 //! Every sequence goes to one object an instruction set, which have to agree in every status, answer,
-//! list, statistic and bit of depth; now and then one of them is drawn into by a pool of threads. All arrays border on forbidden pages. It ends with status 1, and with
-//! the seed and number of the episode, at the first crash, hang, disagreement or impossible answer.
+//! list, statistic and bit of depth; now and then one of them is drawn into by a pool of threads. All arrays border on
+//! forbidden pages. It ends with status 1, and with the seed and number of the episode, at the first crash, hang,
+//! disagreement or impossible answer.
 //!
 //! `cargo run --release --example fuzz_capi -- --seconds 30 --seed 1`
 

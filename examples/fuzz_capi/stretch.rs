@@ -150,7 +150,12 @@ impl Driver<'_> {
             self.families[which].pool = pool;
             done?;
         }
-        self.submitted(which, true)
+        self.submitted(which, true)?;
+        // Nothing was submitted: the pool answers as the others do.
+        if let Some(pool) = &mut self.families[which].pool {
+            pool.settled = true;
+        }
+        Ok(())
     }
 
     fn wake_or_suspend(&mut self, which: usize) -> Check {

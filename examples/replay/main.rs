@@ -3,11 +3,12 @@
 
 #[path = "../shared/depth_picture.rs"]
 mod depth_picture;
-#[path = "../demo/image.rs"]
+#[path = "../shared/image.rs"]
 #[allow(dead_code, reason = "the demo uses more of it")]
 mod image;
 #[path = "../shared/options.rs"]
 mod options;
+#[path = "../shared/play.rs"]
 mod play;
 
 use std::path::PathBuf;

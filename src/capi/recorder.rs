@@ -29,8 +29,6 @@ pub enum MOC_RecordedCallKind {
 /// A recording that was read; see MOC_RecordingLoad.
 pub struct MOC_Recording {
     recording: Recording,
-    /// The matrices in C's form, one a call.
-    matrices: Vec<[f32; 16]>,
 }
 
 /// What a recording begins with.
@@ -143,7 +141,7 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
             result => Some(types::culling_result(result)?),
         };
         let mesh = Mesh { vertices: mesh.vertices, triangles: mesh.triangles, options: &mesh.options };
-        // SAFETY: the caller's contract.
+        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
         unsafe { moc.recorder().render_triangles(result, &mesh) };
         Ok(())
     })
@@ -152,7 +150,8 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
 /// Reads a recording and writes it to `out` (null there on errors). The caller gives it back to MOC_RecordingDestroy.
 /// Several threads may read from one recording at once.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that
+/// is empty, cut or broken.
 ///
 /// # Safety
 /// `path` is null or ends with a zero, `out` is null or can be written.
@@ -236,10 +235,10 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
     guard(|| {
         check_out(out)?;
         // SAFETY: the caller's contract.
-        let MOC_Recording { recording, matrices } = unsafe { recording.as_ref() }.ok_or(Error::NullPointer)?;
+        let MOC_Recording { recording } = unsafe { recording.as_ref() }.ok_or(Error::NullPointer)?;
         let call = recording.calls.get(index as usize).ok_or(Error::IndexOutOfRange)?;
         // SAFETY: not null, and the caller's contract.
-        unsafe { write(out, in_c(call, &matrices[index as usize])) };
+        unsafe { write(out, in_c(call)) };
         Ok(())
     })
 }
@@ -266,19 +265,12 @@ unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recor
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let recording = load()?;
-    let matrices = recording.calls.iter().map(|call| match call {
-        RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh) => {
-            mesh.options.model_to_clip.map_or([0.0; 16], |matrix| matrix.to_cols_array())
-        }
-        _ => [0.0; 16],
-    });
-    let matrices = matrices.collect();
     // SAFETY: as above.
-    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, matrices }))) };
+    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording }))) };
     Ok(())
 }
 
-fn in_c(call: &RecordedCall, matrix: &[f32; 16]) -> MOC_RecordedCall {
+fn in_c(call: &RecordedCall) -> MOC_RecordedCall {
     let plain = MOC_RecordedCall {
         kind: MOC_RecordedCallKind::MOC_RECORDED_CLEAR_BUFFER as i32,
         result: call.result().map_or(MOC_RESULT_UNKNOWN, |result| result as i32),
@@ -293,21 +285,19 @@ fn in_c(call: &RecordedCall, matrix: &[f32; 16]) -> MOC_RecordedCall {
         layout: MOC_VertexLayout { stride: 0, offset_y: 0, offset_zw: 0 },
     };
     let mesh = |kind: MOC_RecordedCallKind, mesh: &RecordedMesh| {
-        let &DrawOptions { model_to_clip, winding, clip_planes } = &mesh.options;
+        let DrawOptions { model_to_clip, winding, clip_planes } = &mesh.options;
+        // A matrix lies there as C has it.
+        let matrix = model_to_clip.as_ref().map(AsRef::<[f32; 16]>::as_ref);
         MOC_RecordedCall {
             kind: kind as i32,
             vertices: mesh.vertices.as_ptr(),
             vertex_floats: mesh.vertices.len(),
             triangles: mesh.triangles.as_ptr(),
             n_triangles: (mesh.triangles.len() / 3) as i32,
-            model_to_clip: if model_to_clip.is_some() { matrix.as_ptr() } else { core::ptr::null() },
-            winding: winding as i32,
+            model_to_clip: matrix.map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
+            winding: *winding as i32,
             clip_planes: clip_planes.bits() as i32,
-            layout: MOC_VertexLayout {
-                stride: mesh.layout.stride,
-                offset_y: mesh.layout.offset_y,
-                offset_zw: mesh.layout.offset_zw,
-            },
+            layout: mesh.layout.into(),
             ..plain
         }
     };

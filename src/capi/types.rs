@@ -215,6 +215,12 @@ impl From<MOC_VertexLayout> for VertexLayout {
     }
 }
 
+impl From<VertexLayout> for MOC_VertexLayout {
+    fn from(l: VertexLayout) -> Self {
+        Self { stride: l.stride, offset_y: l.offset_y, offset_zw: l.offset_zw }
+    }
+}
+
 impl From<MOC_ScissorRect> for ScissorRect {
     fn from(r: MOC_ScissorRect) -> Self {
         Self { min_x: r.min_x, min_y: r.min_y, max_x: r.max_x, max_y: r.max_y }

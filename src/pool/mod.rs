@@ -11,7 +11,8 @@
 //! their locks, `grid.rs` the pieces of the screen.
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
-//! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn.
+//! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
+//! to do, it looks about for 20 microseconds before it sleeps.
 
 mod crew;
 mod grid;
@@ -22,7 +23,7 @@ mod target;
 use core::marker::PhantomData;
 use core::ptr::NonNull;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::thread::{self, JoinHandle};
 
 use crate::pipeline::Mesh;
@@ -73,6 +74,8 @@ pub struct CullingThreadpool {
     near: AtomicU32,
     /// Held for reading by who submits or queries, for writing by who exchanges it.
     target: RwLock<Option<Arc<Target>>>,
+    /// Held around each call while calls are recorded, so that the file has them in the order in which they are drawn.
+    recording: Mutex<()>,
 }
 
 impl CullingThreadpool {
@@ -94,6 +97,7 @@ impl CullingThreadpool {
             bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
             near: AtomicU32::new(f32::NAN.to_bits()),
             target: RwLock::new(None),
+            recording: Mutex::new(()),
         };
         for number in 0..threads as usize {
             let crew = pool.crew.clone();
@@ -197,7 +201,10 @@ impl CullingThreadpool {
         }
         self.near.store(near.to_bits(), Relaxed);
         match &*self.pass() {
-            Some(target) => target.moc().set_near_shared(near),
+            Some(target) => {
+                let _recording = self.recording(target);
+                target.moc().set_near_shared(near)
+            }
             None => Ok(()),
         }
     }
@@ -208,6 +215,7 @@ impl CullingThreadpool {
     /// [`Error::NoBuffer`].
     pub fn clear_buffer(&self) -> Result<(), Error> {
         self.with_buffer(|target| {
+            let _recording = self.recording(target);
             self.crew.submit_ready(|| Work::Clear(target.count_clear()));
             target.moc().recorder().clear_buffer();
             Ok(())
@@ -252,12 +260,13 @@ impl CullingThreadpool {
         options: &DrawOptions,
     ) -> Result<(), Error> {
         self.with_buffer(|target| {
+            let _recording = self.recording(target);
             let near = target.moc().near_clip_plane();
             for piece in triangles.chunks(3 * CALL_TRIANGLES) {
                 let (triangles, indices) = (piece.as_ptr(), piece.len());
                 self.crew.submit(Call { vertices, triangles, indices, options: *options, near, clears: 0 });
             }
-            // SAFETY: the caller's contract.
+            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
             unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
             Ok(())
         })
@@ -297,8 +306,11 @@ impl CullingThreadpool {
         self.with_buffer(|target| {
             let edges = [x_min, y_min, x_max, y_max];
             let tiles = target.moc().rectangle_tiles(edges)?;
+            let recording = self.recording(target);
+            // Before: what is asked while something is drawn may be answered otherwise later, and no answer can be held to it.
+            let settled = recording.is_some() && self.crew.is_done();
             let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
-            target.moc().recorder().test_rect(self.settled(target, result), edges, w_min);
+            target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
             Ok(result)
         })
     }
@@ -330,17 +342,21 @@ impl CullingThreadpool {
     ) -> Result<CullingResult, Error> {
         let mesh = Mesh { vertices, triangles, options };
         self.with_buffer(|target| {
-            // SAFETY: the caller's contract.
+            let recording = self.recording(target);
+            // As in `test_rect`.
+            let settled = recording.is_some() && self.crew.is_done();
+            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
             let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(&mesh) })?;
             // SAFETY: as above.
-            unsafe { target.moc().recorder().test_triangles(self.settled(target, result), &mesh) };
+            unsafe { target.moc().recorder().test_triangles(settled.then_some(result), &mesh) };
             Ok(result)
         })
     }
 
-    /// An answer that a recording can be held to: none while something is being drawn.
-    fn settled(&self, target: &Target, result: CullingResult) -> Option<CullingResult> {
-        (target.moc().recorder().is_on() && self.crew.is_done()).then_some(result)
+    /// While calls are recorded: the right to be the next.
+    fn recording(&self, target: &Target) -> Option<MutexGuard<'_, ()>> {
+        // Whoever has it may work meanwhile, for which it is not needed.
+        target.moc().recorder().is_on().then(|| self.recording.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Looks at the object itself, which has a buffer.

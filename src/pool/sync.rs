@@ -2,6 +2,7 @@
 
 use core::hint::spin_loop;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::thread::yield_now;
 use std::time::{Duration, Instant};
 
 pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
@@ -27,9 +28,11 @@ impl Glance {
     pub fn wait(&self, count: u64) {
         let begin = Instant::now();
         while self.count() == count && begin.elapsed() < GLANCE {
-            for _ in 0..8 {
+            for _ in 0..32 {
                 spin_loop();
             }
+            // On a processor that others need, too, those who work come first.
+            yield_now();
         }
     }
 }

@@ -13,6 +13,8 @@ pub enum RecordingError {
     Busy,
     /// The file could not be made, written or read.
     File(io::Error),
+    /// There is no memory for what is in the file.
+    OutOfMemory,
     /// The file is no recording, or it is cut or broken.
     Invalid {
         /// The byte of the file from which on it makes no sense.
@@ -26,6 +28,7 @@ impl fmt::Display for RecordingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoBuffer => f.write_str("no buffer: the resolution was never set"),
+            Self::OutOfMemory => f.write_str("out of memory"),
             Self::Busy => f.write_str("a recording is under way already"),
             Self::File(error) => write!(f, "a recording cannot be made, written or read: {error}"),
             Self::Invalid { offset, why } => write!(f, "no whole recording: {why}, at byte {offset}"),
@@ -53,6 +56,7 @@ impl From<RecordingError> for crate::Error {
         match error {
             RecordingError::NoBuffer => Self::NoBuffer,
             RecordingError::Busy => Self::Busy,
+            RecordingError::OutOfMemory => Self::OutOfMemory,
             RecordingError::File(_) => Self::File,
             RecordingError::Invalid { .. } => Self::InvalidRecording,
         }

@@ -50,9 +50,9 @@ pub enum RecordedCall {
     /// A rectangle was tested.
     TestRect(RecordedRect),
     /// Occluders were drawn.
-    RenderTriangles(RecordedMesh),
+    RenderTriangles(Box<RecordedMesh>),
     /// Occludees were tested.
-    TestTriangles(RecordedMesh),
+    TestTriangles(Box<RecordedMesh>),
 }
 
 /// A rectangle and what was answered.
@@ -116,11 +116,14 @@ impl Recording {
         reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "no buffer has this resolution")?;
         let mut calls = Vec::new();
         loop {
+            // A call may be a byte of the file: memory that is not there is an error, not an end of the program.
+            calls.try_reserve(1).map_err(|_| RecordingError::OutOfMemory)?;
+            reader.check(calls.len() < i32::MAX as usize, "more calls than can be counted")?;
             calls.push(match reader.byte()? {
                 CLEAR_BUFFER => RecordedCall::ClearBuffer,
                 TEST_RECT => RecordedCall::TestRect(reader.rect()?),
-                RENDER_TRIANGLES => RecordedCall::RenderTriangles(reader.mesh()?),
-                TEST_TRIANGLES => RecordedCall::TestTriangles(reader.mesh()?),
+                RENDER_TRIANGLES => RecordedCall::RenderTriangles(Box::new(reader.mesh()?)),
+                TEST_TRIANGLES => RecordedCall::TestTriangles(Box::new(reader.mesh()?)),
                 END => return Ok(Self { near_clip_plane, resolution, calls }),
                 _ => return Err(reader.invalid("no call is of this kind")),
             });
@@ -180,8 +183,11 @@ impl<'a> Reader<'a> {
     /// Words that together are in the file.
     fn words(&mut self, count: usize, each: usize, why: &'static str) -> Result<Vec<u32>, RecordingError> {
         let len = count.checked_mul(each).and_then(|n| n.checked_mul(4)).ok_or_else(|| self.invalid(why))?;
-        let (words, _) = self.take(len)?.as_chunks::<4>();
-        Ok(words.iter().map(|&word| u32::from_le_bytes(word)).collect())
+        let (from, _) = self.take(len)?.as_chunks::<4>();
+        let mut words = Vec::new();
+        words.try_reserve_exact(from.len()).map_err(|_| RecordingError::OutOfMemory)?;
+        words.extend(from.iter().map(|&word| u32::from_le_bytes(word)));
+        Ok(words)
     }
 
     fn result(&mut self) -> Result<Option<CullingResult>, RecordingError> {

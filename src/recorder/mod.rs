@@ -65,9 +65,13 @@ impl Recorder {
     fn record(&self, write: impl FnOnce(&mut Writer<BufWriter<File>>) -> io::Result<()>) {
         let mut state = self.lock();
         if let Err(error) = state.write(write) {
+            if error.kind() == io::ErrorKind::InvalidInput {
+                // Nothing of the call was written: what came before stays whole.
+                let _ = state.end();
+            }
             // Half an entry is worth nothing, and so is what follows it.
             state.file = None;
-            state.failed = Some(error);
+            state.failed.get_or_insert(error);
             self.on.store(false, Relaxed);
         }
     }
@@ -137,7 +141,9 @@ impl Recorder {
             }
             self.on.store(false, Relaxed);
             // An error stays for who stops.
-            state.failed = state.end().err();
+            if let Err(error) = state.end() {
+                state.failed.get_or_insert(error);
+            }
         }
     }
 }
@@ -154,8 +160,9 @@ impl State {
 
     fn end(&mut self) -> io::Result<()> {
         // The header of a recording of nothing.
-        self.write(|_| Ok(()))?;
-        self.file.take().map_or(Ok(()), Writer::end)
+        let written = self.write(|_| Ok(()));
+        let ended = self.file.take().map_or(Ok(()), Writer::end);
+        written.and(ended)
     }
 }
 
@@ -170,9 +177,9 @@ impl MaskedOcclusionCulling {
     /// Records clears, draws and queries into a file from now on, for [`Recording`] and for the player of the library
     /// that this one stands in for.
     ///
-    /// The file names one near plane and one resolution: setting another of either ends it, once it holds a call. Start before the clear of
-    /// a frame, so that the recording begins with an empty buffer. Merges and binned lists are not recorded; see
-    /// [`Self::record_render_triangles`].
+    /// The file names one near plane and one resolution: setting another of either ends it, once it holds a call.
+    /// Start before the clear of a frame, so that the recording begins with an empty buffer. Merges and binned lists are not
+    /// recorded; see [`Self::record_render_triangles`].
     ///
     /// # Errors
     /// [`RecordingError::NoBuffer`]; [`RecordingError::Busy`] while it records already; [`RecordingError::File`].

@@ -7,7 +7,7 @@ impl RecordedCall {
     /// Makes the call. The answer of a draw or a query.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`].
+    /// [`Error::NoBuffer`]; of a call that was not loaded also those of [`MaskedOcclusionCulling::render_triangles`].
     pub fn play(&self, moc: &mut MaskedOcclusionCulling) -> Result<Option<CullingResult>, Error> {
         match self {
             Self::ClearBuffer => moc.clear_buffer().map(|()| None),
@@ -36,7 +36,7 @@ impl Recording {
     /// call and its answer.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`], [`Error::InvalidSize`] and [`Error::InvalidNumber`] of a recording that was not loaded.
+    /// [`Error::OutOfMemory`]; of a recording that was not loaded also those of the calls that are made.
     pub fn play(
         &self,
         moc: &mut MaskedOcclusionCulling,

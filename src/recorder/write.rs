@@ -38,15 +38,16 @@ impl<W: Write> Writer<W> {
     /// Every vertex from the lowest to the highest index can be read.
     pub unsafe fn triangles(&mut self, kind: u8, result: Option<CullingResult>, mesh: &Mesh<'_>) -> io::Result<()> {
         let &Mesh { vertices, triangles, options } = mesh;
-        self.out.write_all(&[kind])?;
-        self.int(of_result(result))?;
-        let (Some(&low), Some(&high)) = (triangles.iter().min(), triangles.iter().max()) else {
-            return self.int(0);
-        };
+        let bounds = triangles.iter().min().copied().zip(triangles.iter().max().copied());
         let too_large =
             || io::Error::new(io::ErrorKind::InvalidInput, "more vertices or triangles than the format can count");
-        let count = i32::try_from(u64::from(high - low) + 1).map_err(|_| too_large())?;
+        let count = bounds.map_or(0, |(low, high)| u64::from(high - low) + 1);
+        let count = i32::try_from(count).map_err(|_| too_large())?;
+        let num_triangles = i32::try_from(triangles.len() / 3).map_err(|_| too_large())?;
+        self.out.write_all(&[kind])?;
+        self.int(of_result(result))?;
         self.int(count)?;
+        let Some((low, high)) = bounds else { return Ok(()) };
         let layout = written_layout(vertices.layout);
         self.int(layout.stride)?;
         for index in low..=high {
@@ -58,7 +59,7 @@ impl<W: Write> Writer<W> {
             }
             self.out.write_all(&vertex[..layout.stride as usize])?;
         }
-        self.int(i32::try_from(triangles.len() / 3).map_err(|_| too_large())?)?;
+        self.int(num_triangles)?;
         for index in triangles {
             self.words(&[index - low])?;
         }
@@ -104,7 +105,7 @@ fn written_layout(layout: VertexLayout) -> VertexLayout {
 /// # Safety
 /// The vertex can be read.
 unsafe fn coordinates(VertexSource { base, layout }: VertexSource, index: u32) -> [[u8; 4]; 3] {
-    let vertex = base.wrapping_offset(index as isize * layout.stride as isize);
+    let vertex = base.wrapping_offset((index as isize).wrapping_mul(layout.stride as isize));
     [0, layout.offset_y, layout.offset_zw].map(|offset| {
         // SAFETY: the caller's contract.
         let bits = unsafe { vertex.wrapping_offset(offset as isize).cast::<u32>().read_unaligned() };
