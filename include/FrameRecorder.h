@@ -3,7 +3,7 @@
  *
  * MaskedOcclusionCulling::RecorderStart and RecorderStop write a file of what an object was told and what it answered;
  * FrameRecording::Load reads it. Both are always there, whatever MOC_RECORDER_ENABLE and
- * MOC_RECORDER_ENABLE_PLAYBACK say, and cost nothing while nothing is recorded. The file format is that of the library
+ * MOC_RECORDER_ENABLE_PLAYBACK say, and cost a load and a branch a call while nothing is recorded. The file format is that of the library
  * that this header stands in for; docs/recordings.md has it to the byte.
  *
  * Header-only over the C functions of masked_occlusion_culling.h. C++11. Load throws only what std::vector throws when

@@ -48,7 +48,7 @@
  * `#if QUICK_MASK` of the program then is false, and -Wundef says so. Define them to have it as before.
  *
  * Accepted without effect, because the answer holds always: CLIPPING_PRESERVES_ORDER (the order is kept),
- * MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, and costs nothing while it is off;
+ * MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, a load and a branch a call while it is off;
  * FrameRecorder.h reads recordings).
  */
 #ifndef USE_D3D
