@@ -7,8 +7,8 @@ mod common;
 mod options;
 
 use clap::Parser;
-use common::{HEIGHT, ORDERS, RULES, WIDTH, views};
-use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
+use common::{HEIGHT, ORDERS, WIDTH, views};
+use masked_occlusion_culling::{MaskedOcclusionCulling, Settings};
 use options::{Isa, Rule};
 
 #[derive(Parser)]
@@ -31,18 +31,9 @@ struct Args {
 
 fn main() -> Result<(), String> {
     let args = Args::parse();
-    // The list is in the order of the numbers.
-    let (_, update_rule) = RULES[args.rule as usize];
     let (_, order) = ORDERS.into_iter().find(|o| o.0 == args.order).ok_or("no such order")?;
     let view = views(order).into_iter().find(|v| v.name == args.scene).ok_or("no such scene")?;
-    let implementation = match args.isa {
-        Isa::Scalar => Implementation::Scalar,
-        Isa::Sse2 => Implementation::Sse2,
-        Isa::Sse41 => Implementation::Sse41,
-        Isa::Avx2 => Implementation::Avx2,
-        Isa::Avx512 => Implementation::Avx512,
-        Isa::Neon => Implementation::Neon,
-    };
+    let (implementation, update_rule) = (args.isa.into(), args.rule.into());
     let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, ..Settings::default() });
     moc.set_resolution(WIDTH, HEIGHT).map_err(|e| e.to_string())?;
     for _ in 0..args.frames {

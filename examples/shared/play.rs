@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use masked_occlusion_culling::{
-    CullingResult, Implementation, MaskedOcclusionCulling, RecordedCall, Recording, Settings, UpdateRule,
+    CullingResult, Implementation, MaskedOcclusionCulling, RecordedCall, Recording, Settings,
 };
 
 use crate::depth_picture::depth_picture;
@@ -29,12 +29,8 @@ pub struct Options<'a> {
 pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let recording = Recording::load(options.file).map_err(|error| format!("{}: {error}", options.file.display()))?;
     let mut moc = MaskedOcclusionCulling::new(Settings {
-        implementation: options.isa.map_or(Implementation::Avx512, implementation),
-        update_rule: match options.rule {
-            Rule::ThreeLayer => UpdateRule::ThreeLayer,
-            Rule::Quick => UpdateRule::Quick,
-            Rule::Accurate => UpdateRule::Accurate,
-        },
+        implementation: options.isa.map_or(Implementation::Avx512, Implementation::from),
+        update_rule: options.rule.into(),
         ..Settings::default()
     });
     say(&format!("{}: {}", options.file.display(), Content::of(&recording)));
@@ -55,17 +51,6 @@ pub fn run(options: &Options<'_>) -> crate::Result<()> {
         Err(format!("{differ} answers differ from those recorded (by another update rule? See --rule)").into())
     } else {
         Ok(())
-    }
-}
-
-fn implementation(isa: Isa) -> Implementation {
-    match isa {
-        Isa::Scalar => Implementation::Scalar,
-        Isa::Sse2 => Implementation::Sse2,
-        Isa::Sse41 => Implementation::Sse41,
-        Isa::Avx2 => Implementation::Avx2,
-        Isa::Avx512 => Implementation::Avx512,
-        Isa::Neon => Implementation::Neon,
     }
 }
 

@@ -7,7 +7,7 @@ use super::mesh::{CheckedMesh, MeshArguments};
 use super::pointers::{check_out, objects, read, slice_mut, write};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_VertexLayout};
-use crate::{CullingThreadpool, Error, MaskedOcclusionCulling};
+use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, VertexLayout};
 
 /// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
 pub struct MOC_Threadpool {
@@ -21,9 +21,6 @@ struct State {
     matrix: Option<[f32; 16]>,
     layout: MOC_VertexLayout,
 }
-
-/// x, y, z, w.
-const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, offset_zw: 12 };
 
 impl MOC_Threadpool {
     /// A mesh with what is set, checked.
@@ -96,7 +93,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, core::ptr::null_mut()) };
         let pool = CullingThreadpool::new(threads, bins_w, bins_h, max_jobs)?;
-        let state = Mutex::new(State { matrix: None, layout: PACKED });
+        let state = Mutex::new(State { matrix: None, layout: VertexLayout::CLIP_SPACE.into() });
         // SAFETY: as above.
         unsafe { write(out, Box::into_raw(Box::new(MOC_Threadpool { pool, state }))) };
         Ok(())
@@ -248,7 +245,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
     guard(|| {
         // SAFETY: the caller's contract.
         let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
-        let layout = layout.unwrap_or(PACKED);
+        let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
         if layout.stride < 0 {
             return Err(Error::InvalidLayout);
         }

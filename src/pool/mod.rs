@@ -367,14 +367,6 @@ impl CullingThreadpool {
         self.with_buffer(|target| look(target.moc()))
     }
 
-    /// Asks while nobody draws.
-    pub(crate) fn ask_all(
-        &self,
-        ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
-    ) -> Result<CullingResult, Error> {
-        self.with_buffer(|target| target.query(target.all_tiles(), ask))
-    }
-
     /// Flushes, and writes the depth of every pixel; see [`MaskedOcclusionCulling::compute_pixel_depth_buffer`].
     ///
     /// # Errors
@@ -395,7 +387,7 @@ impl CullingThreadpool {
             moc.compute_pixel_depth_buffer(array(width as usize * height as usize)?, flip_y)?;
             Ok(CullingResult::Visible)
         };
-        self.ask_all(write).map(|_| ())
+        self.with_buffer(|target| target.query(target.all_tiles(), write)).map(|_| ())
     }
 
     /// What the object counted, after a flush; see [`MaskedOcclusionCulling::statistics`].

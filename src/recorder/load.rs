@@ -95,7 +95,8 @@ impl Recording {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`RecordingError::File`]; [`RecordingError::Invalid`] for one that is empty, cut, or no recording.
+    /// [`RecordingError::File`]; [`RecordingError::OutOfMemory`]; [`RecordingError::Invalid`] for one that is empty, cut, or no
+    /// recording.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         Self::from_bytes(&std::fs::read(path)?)
     }
@@ -103,7 +104,7 @@ impl Recording {
     /// Reads the bytes of a file. What follows the end marker does not matter.
     ///
     /// # Errors
-    /// [`RecordingError::Invalid`].
+    /// [`RecordingError::OutOfMemory`], [`RecordingError::Invalid`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, RecordingError> {
         let mut reader = Reader { bytes, at: 0 };
         if reader.word().ok() != Some(SIGNATURE) {
