@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 pub use crate::options::{Isa, Rule};
 
@@ -36,13 +36,6 @@ pub struct Args {
     pub out: PathBuf,
 }
 
-/// What an instruction set is called; the number comes from a library.
-pub fn isa_name(number: i32) -> String {
-    let known = Isa::value_variants().iter().find(|isa| **isa as i32 == number);
-    let name = known.and_then(|isa| isa.to_possible_value()).map(|value| value.get_name().to_owned());
-    name.unwrap_or_else(|| format!("instruction set {number}"))
-}
-
 fn seconds(text: &str) -> Result<Duration, String> {
     let number = text.parse().ok().filter(|s: &f64| *s > 0.0 && *s <= 3600.0);
     number.map(Duration::from_secs_f64).ok_or("a number above 0 and up to 3600 is expected".into())
@@ -51,6 +44,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::growth::culler::isa_name;
 
     #[test]
     fn values_are_read_and_checked() {

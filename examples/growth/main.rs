@@ -2,20 +2,13 @@
 //! library with the same C++ class can be measured beside this one; docs/benchmarking.md says how.
 
 mod args;
-mod culler;
-mod job;
-mod measure;
-mod mesh;
+#[path = "../shared/growth/mod.rs"]
+mod growth;
 #[cfg(all(test, target_os = "linux"))]
 #[path = "../../tests/native/mod.rs"]
 mod native;
 #[path = "../shared/options.rs"]
 mod options;
-mod other;
-mod ours;
-mod plot;
-mod report;
-mod scene;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -25,10 +18,11 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use args::{Args, Isa};
-use culler::Culler;
-use other::Other;
-use ours::Ours;
-use report::Row;
+use growth::culler::Culler;
+use growth::other::Other;
+use growth::ours::Ours;
+use growth::table::{self, Row};
+use growth::{job, measure, plot};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -56,21 +50,21 @@ fn run(args: &Args) -> Result<()> {
     let bar = ProgressBar::new(jobs.len() as u64).with_style(ProgressStyle::with_template(
         "{bar:40} {pos} of {len} points, {elapsed} of about {duration}: {msg}",
     )?);
-    say(&bar, &report::heading(&libraries));
+    say(&bar, &table::heading(&libraries));
     let mut rows = Vec::new();
     for job in jobs {
         bar.set_message(job.study.name());
         let scene = job.scene();
         let samples = measure::measure(&mut cullers, &scene, job.size, args.seconds)?;
         rows.push(Row { job, triangles: scene.triangles(), samples });
-        say(&bar, &report::line(&rows[rows.len() - 1]));
+        say(&bar, &table::line(&rows[rows.len() - 1]));
         bar.inc(1);
     }
     bar.finish_and_clear();
 
     let csv = args.out.join("growth.csv");
     let file = File::create(&csv).map_err(|e| format!("cannot write {}: {e}", csv.display()))?;
-    report::write_csv(BufWriter::new(file), &libraries, &rows)?;
+    table::write_csv(BufWriter::new(file), &libraries, &rows)?;
     plot::write(&args.out, &libraries, &rows)?;
     say(&bar, &format!("written to {}", args.out.display()));
     Ok(())

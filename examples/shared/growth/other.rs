@@ -8,10 +8,9 @@ use std::ptr::NonNull;
 use glam::Mat4;
 use libloading::Library;
 
+use super::culler::{Culler, isa_name};
+use super::mesh::Mesh;
 use crate::Result;
-use crate::args::isa_name;
-use crate::culler::Culler;
-use crate::mesh::Mesh;
 
 type Object = NonNull<c_void>;
 
@@ -120,12 +119,12 @@ impl Culler for Other {
 // Elsewhere a shared object is linked with other arguments.
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    use super::super::culler::{PROBES, frame, hidden};
+    use super::super::ours::Ours;
+    use super::super::scene::{lumps, sheets};
     use super::*;
-    use crate::args::Rule;
-    use crate::culler::{PROBES, frame, hidden};
     use crate::native;
-    use crate::ours::Ours;
-    use crate::scene::{lumps, sheets};
+    use crate::options::Rule;
 
     #[test]
     fn our_own_class_behind_other_cpp_draws_the_same() {

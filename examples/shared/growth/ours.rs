@@ -8,10 +8,10 @@ use glam::Mat4;
 use masked_occlusion_culling::MaskedOcclusionCulling;
 use masked_occlusion_culling::capi::*;
 
+use super::culler::{Culler, isa_name};
+use super::mesh::Mesh;
 use crate::Result;
-use crate::args::{Rule, isa_name};
-use crate::culler::Culler;
-use crate::mesh::Mesh;
+use crate::options::Rule;
 
 const OK: MOC_Status = MOC_Status::MOC_STATUS_OK;
 

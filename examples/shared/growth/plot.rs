@@ -5,9 +5,9 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use super::job::Study;
+use super::table::Row;
 use crate::Result;
-use crate::job::Study;
-use crate::report::Row;
 
 /// Blue and orange are told apart by everyone; a third library would need a third colour.
 const COLOURS: [RGBColor; 2] = [RGBColor(0, 90, 181), RGBColor(220, 90, 0)];
@@ -150,9 +150,9 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::job::jobs;
+    use super::super::measure::Sample;
     use super::*;
-    use crate::job::jobs;
-    use crate::measure::Sample;
 
     #[test]
     fn every_plot_names_its_curves_and_units() {

@@ -1,6 +1,6 @@
 //! What is measured: the points of each study, in order.
 
-use crate::scene::{self, Scene};
+use super::scene::{self, Scene};
 
 pub const TERRAINS: [u32; 9] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
 const SIZES: [(u32, u32); 6] = [(640, 400), (1280, 720), (1920, 1080), (2560, 1440), (3840, 2160), (7680, 4320)];

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use super::culler::{Culler, frame, hidden};
+use super::scene::Scene;
 use crate::Result;
-use crate::culler::{Culler, frame, hidden};
-use crate::scene::Scene;
 
 /// What came out for a library.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use fastrand::Rng;
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_to_mat4};
 use glam::{Mat4, Vec3, vec3};
 
-use crate::mesh::Mesh;
+use super::mesh::Mesh;
 
 const NEAR: f32 = 0.1;
 const ASPECT: f32 = 16.0 / 9.0;
@@ -95,11 +95,11 @@ pub fn sheets(count: u32, nearest_first: bool) -> Scene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::culler::{Culler, PROBES, frame, hidden};
+    use super::super::job::TERRAINS;
+    use super::super::ours::Ours;
     use super::*;
-    use crate::args::Rule;
-    use crate::culler::{Culler, PROBES, frame, hidden};
-    use crate::job::TERRAINS;
-    use crate::ours::Ours;
+    use crate::options::Rule;
 
     #[test]
     fn scenes_have_the_wanted_triangles() {

@@ -4,10 +4,10 @@ use std::io::Write;
 
 use indicatif::HumanCount;
 
+use super::culler::PROBES;
+use super::job::Job;
+use super::measure::Sample;
 use crate::Result;
-use crate::culler::PROBES;
-use crate::job::Job;
-use crate::measure::Sample;
 
 /// A point and what each library took for it.
 pub struct Row {
@@ -62,8 +62,8 @@ pub fn write_csv(mut out: impl Write, libraries: &[String], rows: &[Row]) -> Res
 
 #[cfg(test)]
 mod tests {
+    use super::super::job::jobs;
     use super::*;
-    use crate::job::jobs;
 
     #[test]
     fn the_file_has_a_row_for_each_point_and_library() {

@@ -1,10 +1,12 @@
 //! What is asked of a library: enough to draw a frame and to see that it was drawn.
 
+use clap::ValueEnum;
 use glam::Mat4;
 
+use super::mesh::Mesh;
+use super::scene::Scene;
 use crate::Result;
-use crate::mesh::Mesh;
-use crate::scene::Scene;
+use crate::options::Isa;
 
 pub trait Culler {
     /// Who it is, in the table and the legends.
@@ -39,4 +41,11 @@ pub fn hidden(culler: &dyn Culler) -> usize {
     rectangles
         .filter(|&(x, y)| culler.hides([edge(x, COLUMNS), edge(y, ROWS), edge(x + 1, COLUMNS), edge(y + 1, ROWS)], 1e6))
         .count()
+}
+
+/// What an instruction set is called; the number comes from a library.
+pub fn isa_name(number: i32) -> String {
+    let known = Isa::value_variants().iter().find(|isa| **isa as i32 == number);
+    let name = known.and_then(|isa| isa.to_possible_value()).map(|value| value.get_name().to_owned());
+    name.unwrap_or_else(|| format!("instruction set {number}"))
 }
