@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use glam::Vec3;
 
+use crate::camera::Camera;
 use crate::options::{Isa, Rule};
+use crate::scene::Scene;
 
 /// Culls a scene with a C++ program that uses the library as an engine would, and draws what it found.
 #[derive(Debug, Parser)]
@@ -66,6 +68,36 @@ impl Args {
         let is_recording = |path: &&Path| path.extension().is_some_and(|extension| extension == "mocrec");
         self.scene.as_deref().filter(is_recording)
     }
+
+    /// The camera that is asked for; what is left open is chosen for the scene.
+    pub fn camera(&self, scene: &Scene) -> crate::Result<Camera> {
+        let (lo, hi) = scene.bounds();
+        let mut camera = Camera {
+            eye: lo,
+            look: (lo + hi) / 2.0,
+            up: self.up,
+            fov: self.fov.to_radians(),
+            near: self.near.unwrap_or((hi - lo).length() * 2e-4),
+            aspect: self.size.0 as f32 / self.size.1 as f32,
+        };
+        match (self.eye, self.look) {
+            (Some(eye), look) => (camera.eye, camera.look) = (eye, look.unwrap_or(camera.look)),
+            (None, _) if self.scene.is_none() => {
+                let (eye, look) = crate::town::camera();
+                (camera.eye, camera.look) = (eye, self.look.unwrap_or(look));
+            }
+            (None, _) => camera.choose(scene, self.look),
+        }
+        if camera.look == camera.eye {
+            camera.look += camera.sideways();
+        }
+        if !camera.is_upright() {
+            return Err(
+                "the camera looks along --up: give another direction as --up, or another --eye or --look".into()
+            );
+        }
+        Ok(camera)
+    }
 }
 
 impl Rule {
@@ -112,6 +144,20 @@ fn field_of_view(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn a_view_along_up_is_refused() {
+        let mut scene = Scene::default();
+        let mut mesh = Mesh::default();
+        mesh.cuboid(Vec3::ZERO, Vec3::ONE, Vec3::ONE);
+        scene.add(mesh, true, false);
+        let camera = |eye, up| Args::parse_from(["demo", "a.obj", "--eye", eye, "--up", up]).camera(&scene);
+        assert!(camera("0.5,9,0.5", "0,1,0").unwrap_err().to_string().contains("--up"));
+        assert!(camera("0.5,9,0.5", "0,0,2").is_ok());
+        assert!(camera("0.5,9,0.6", "0,1,0").is_ok());
+        assert!(camera("3e38,3e38,3e38", "0,1,0").is_err());
+    }
 
     #[test]
     fn values_are_read_and_checked() {

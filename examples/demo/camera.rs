@@ -3,8 +3,6 @@
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_to_mat4};
 use glam::{Mat4, Vec3};
 
-use crate::Result;
-use crate::args::Args;
 use crate::raster::{NOTHING, ZBuffer};
 use crate::scene::Scene;
 
@@ -22,38 +20,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera that the arguments ask for; what they leave open is chosen for the scene.
-    pub fn new(args: &Args, scene: &Scene) -> Result<Self> {
-        let (lo, hi) = scene.bounds();
-        let mut camera = Self {
-            eye: lo,
-            look: (lo + hi) / 2.0,
-            up: args.up,
-            fov: args.fov.to_radians(),
-            near: args.near.unwrap_or((hi - lo).length() * 2e-4),
-            aspect: args.size.0 as f32 / args.size.1 as f32,
-        };
-        match (args.eye, args.look) {
-            (Some(eye), look) => (camera.eye, camera.look) = (eye, look.unwrap_or(camera.look)),
-            (None, _) if args.scene.is_none() => {
-                let (eye, look) = crate::town::camera();
-                (camera.eye, camera.look) = (eye, args.look.unwrap_or(look));
-            }
-            (None, _) => camera.choose(scene, args.look),
-        }
-        if camera.look == camera.eye {
-            camera.look += camera.sideways();
-        }
-        if !camera.is_upright() {
-            return Err(
-                "the camera looks along --up: give another direction as --up, or another --eye or --look".into()
-            );
-        }
-        Ok(camera)
-    }
-
     /// Is up another direction than that of the view? Places too far apart for a float say no as well.
-    fn is_upright(&self) -> bool {
+    pub fn is_upright(&self) -> bool {
         (self.look - self.eye).normalize_or_zero().cross(self.up).length() >= 1e-3
     }
 
@@ -64,12 +32,24 @@ impl Camera {
     }
 
     /// Some direction at a right angle to up.
-    fn sideways(&self) -> Vec3 {
+    pub fn sideways(&self) -> Vec3 {
         self.up.any_orthonormal_vector()
     }
 
     /// Tries places inside of the scene and in front of it, and takes the best.
-    fn choose(&mut self, scene: &Scene, look: Option<Vec3>) {
+    pub fn choose(&mut self, scene: &Scene, look: Option<Vec3>) {
+        if let Some(best) = self.ranked(scene, look).first() {
+            (self.eye, self.look) = *best;
+            return;
+        }
+        let (lo, hi) = scene.bounds();
+        let local = self.sideways() * -1.1 + self.up * 0.4 + self.up.cross(self.sideways()) * 1.1;
+        (self.eye, self.look) = ((lo + hi) / 2.0 + local * (hi - lo), (lo + hi) / 2.0);
+    }
+
+    /// Places of the eye inside of the scene and in front of it with what each looks at, the best first; without those from
+    /// which nothing is to be seen.
+    pub fn ranked(&self, scene: &Scene, look: Option<Vec3>) -> Vec<(Vec3, Vec3)> {
         let (lo, hi) = scene.bounds();
         let size = hi - lo;
         let (right, ahead) = (self.sideways(), self.up.cross(self.sideways()));
@@ -92,17 +72,14 @@ impl Camera {
         for (x, z) in [(-0.6, -0.6), (1.6, -0.6), (1.6, 1.6), (-0.6, 1.6)] {
             places.push((at(x, 0.9, z), (lo + hi) / 2.0));
         }
-
-        let mut best = 0.0;
-        let mut chosen = (at(-0.6, 0.9, 1.6), (lo + hi) / 2.0);
-        for (eye, ahead) in places {
-            (self.eye, self.look) = (eye, look.unwrap_or(ahead));
-            let score = if self.is_upright() { self.score(scene) } else { 0.0 };
-            if score > best {
-                (best, chosen) = (score, (self.eye, self.look));
-            }
-        }
-        (self.eye, self.look) = chosen;
+        let scored = places.into_iter().map(|(eye, ahead)| {
+            let camera = Self { eye, look: look.unwrap_or(ahead), ..*self };
+            (if camera.is_upright() { camera.score(scene) } else { 0.0 }, (eye, camera.look))
+        });
+        let mut scored: Vec<_> = scored.filter(|(score, _)| *score > 0.0).collect();
+        // Stable: of equal ones the first.
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        scored.into_iter().map(|(_, place)| place).collect()
     }
 
     /// How much there is to see and to cull: many objects in front and many behind, few of them in the way, and
@@ -147,25 +124,4 @@ pub fn in_view(lo: Vec3, hi: Vec3, clip: &Mat4) -> bool {
 
 pub fn box_corners(lo: Vec3, hi: Vec3) -> [Vec3; 8] {
     std::array::from_fn(|i| Vec3::select(glam::BVec3::new(i & 1 == 0, i & 2 == 0, i & 4 == 0), lo, hi))
-}
-
-#[cfg(test)]
-mod tests {
-    use clap::Parser;
-
-    use super::*;
-    use crate::scene::Mesh;
-
-    #[test]
-    fn a_view_along_up_is_refused() {
-        let mut scene = Scene::default();
-        let mut mesh = Mesh::default();
-        mesh.cuboid(Vec3::ZERO, Vec3::ONE, Vec3::ONE);
-        scene.add(mesh, true, false);
-        let camera = |eye, up| Camera::new(&Args::parse_from(["demo", "a.obj", "--eye", eye, "--up", up]), &scene);
-        assert!(camera("0.5,9,0.5", "0,1,0").unwrap_err().to_string().contains("--up"));
-        assert!(camera("0.5,9,0.5", "0,0,2").is_ok());
-        assert!(camera("0.5,9,0.6", "0,1,0").is_ok());
-        assert!(camera("3e38,3e38,3e38", "0,1,0").is_err());
-    }
 }

@@ -37,7 +37,6 @@ use clap::Parser;
 use indicatif::ProgressBar;
 
 use args::Args;
-use camera::Camera;
 use depth_picture::depth_picture;
 use exchange::Fate;
 
@@ -75,7 +74,7 @@ fn run(args: &Args) -> Result<()> {
     let name = args.scene.as_ref().map_or("a generated town".into(), |p| p.display().to_string());
     say(format_args!("{name}: {} objects, {} triangles\n", scene.objects.len(), scene.num_triangles()));
 
-    let camera = step("choosing a camera", || Camera::new(args, &scene))?;
+    let camera = step("choosing a camera", || args.camera(&scene))?;
     let list = |v: glam::Vec3| v.to_array().map(|n| n.to_string()).join(",");
     say(format_args!("camera: --eye {} --look {}\n", list(camera.eye), list(camera.look)));
 

@@ -36,71 +36,92 @@ impl ZBuffer {
 
     /// Draws an object that is called `id`. Clips at w = `near`.
     pub fn draw(&mut self, object: &Object, id: u32, clip_from_world: &Mat4, near: f32) {
-        let clip: Vec<DVec4> =
-            object.mesh.positions.iter().map(|p| (*clip_from_world * p.extend(1.0)).as_dvec4()).collect();
-        for (t, triangle) in object.mesh.triangles.iter().enumerate() {
-            let corners = triangle.map(|i| clip[i as usize]);
-            let beyond = |out: fn(&DVec4) -> bool| corners.iter().all(out);
-            if beyond(|c| c.x < -c.w) || beyond(|c| c.x > c.w) || beyond(|c| c.y < -c.w) || beyond(|c| c.y > c.w) {
-                continue;
+        let Self { width, height, depth: nearest, owner, margin, grow } = self;
+        each_pixel(object, (*width, *height), *grow, clip_from_world, near, |pixel, triangle, depth| {
+            if depth > nearest[pixel] * *margin {
+                nearest[pixel] = depth;
+                owner[pixel] = (id, triangle);
             }
-            let (polygon, n) = clip_near(&corners, f64::from(near));
-            for i in 2..n {
-                self.triangle([polygon[0], polygon[i - 1], polygon[i]], (id, t as u32), object.two_sided);
-            }
+        });
+    }
+}
+
+/// Calls `touch` with pixel, triangle and depth (clip-space z/w) for all pixels of all triangles of an object, which are grown
+/// by `grow` pixels and clipped at w = `near`.
+pub fn each_pixel(
+    object: &Object,
+    size: (usize, usize),
+    grow: f64,
+    clip_from_world: &Mat4,
+    near: f32,
+    mut touch: impl FnMut(usize, u32, f32),
+) {
+    let clip: Vec<DVec4> =
+        object.mesh.positions.iter().map(|p| (*clip_from_world * p.extend(1.0)).as_dvec4()).collect();
+    for (t, triangle) in object.mesh.triangles.iter().enumerate() {
+        let corners = triangle.map(|i| clip[i as usize]);
+        let beyond = |out: fn(&DVec4) -> bool| corners.iter().all(out);
+        if beyond(|c| c.x < -c.w) || beyond(|c| c.x > c.w) || beyond(|c| c.y < -c.w) || beyond(|c| c.y > c.w) {
+            continue;
+        }
+        let (polygon, n) = clip_near(&corners, f64::from(near));
+        for i in 2..n {
+            let corners = [polygon[0], polygon[i - 1], polygon[i]];
+            each_pixel_of_triangle(corners, size, grow, object.two_sided, |pixel, depth| touch(pixel, t as u32, depth));
         }
     }
+}
 
-    fn triangle(&mut self, clip: [DVec4; 3], owner: (u32, u32), two_sided: bool) {
-        let (width, height) = (self.width as f64, self.height as f64);
-        // Vertices lie on a grid of 1/256 pixel, as in the library.
-        let snap = |v: f64| (v * 256.0).round() / 256.0;
-        let mut p =
-            clip.map(|c| (snap((c.x / c.w * 0.5 + 0.5) * width), snap((0.5 - c.y / c.w * 0.5) * height), c.z / c.w));
-        let area =
-            |p: &[(f64, f64, f64); 3]| (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
-        // y points down, so that fronts are negative.
-        match area(&p) {
-            a if a < 0.0 => p.swap(1, 2),
-            a if a > 0.0 && two_sided => {}
-            _ => return,
+fn each_pixel_of_triangle(
+    clip: [DVec4; 3],
+    size: (usize, usize),
+    grow: f64,
+    two_sided: bool,
+    mut touch: impl FnMut(usize, f32),
+) {
+    let (width, height) = (size.0 as f64, size.1 as f64);
+    // Vertices lie on a grid of 1/256 pixel, as in the library.
+    let snap = |v: f64| (v * 256.0).round() / 256.0;
+    let mut p =
+        clip.map(|c| (snap((c.x / c.w * 0.5 + 0.5) * width), snap((0.5 - c.y / c.w * 0.5) * height), c.z / c.w));
+    let area = |p: &[(f64, f64, f64); 3]| (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
+    // y points down, so that fronts are negative.
+    match area(&p) {
+        a if a < 0.0 => p.swap(1, 2),
+        a if a > 0.0 && two_sided => {}
+        _ => return,
+    }
+    let double_area = area(&p);
+
+    let rows = |v: f64, max: f64| v.clamp(0.0, max) as usize;
+    let (top, bottom) = (p[0].1.min(p[1].1).min(p[2].1), p[0].1.max(p[1].1).max(p[2].1));
+    let (left, right) = (p[0].0.min(p[1].0).min(p[2].0), p[0].0.max(p[1].0).max(p[2].0));
+    // a x + b y + c >= 0 inside of each edge, at pixel centres.
+    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+        let (a, b) = (p[i].1 - p[j].1, p[j].0 - p[i].0);
+        (a, b, -(a * p[i].0 + b * p[i].1) + grow * a.hypot(b))
+    });
+    let depth_x = ((p[1].2 - p[0].2) * (p[2].1 - p[0].1) - (p[2].2 - p[0].2) * (p[1].1 - p[0].1)) / double_area;
+    let depth_y = ((p[2].2 - p[0].2) * (p[1].0 - p[0].0) - (p[1].2 - p[0].2) * (p[2].0 - p[0].0)) / double_area;
+
+    for row in rows(top - 1.0, height)..rows(bottom + 1.0, height) {
+        let y = row as f64 + 0.5;
+        let (mut from, mut to) = (left - 1.0, right + 1.0);
+        for (a, b, c) in edges {
+            let rest = b * y + c;
+            if a > 0.0 {
+                from = from.max(-rest / a);
+            } else if a < 0.0 {
+                to = to.min(-rest / a);
+            } else if rest < 0.0 {
+                to = f64::NEG_INFINITY;
+            }
         }
-        let double_area = area(&p);
-
-        let rows = |v: f64, max: f64| v.clamp(0.0, max) as usize;
-        let (top, bottom) = (p[0].1.min(p[1].1).min(p[2].1), p[0].1.max(p[1].1).max(p[2].1));
-        let (left, right) = (p[0].0.min(p[1].0).min(p[2].0), p[0].0.max(p[1].0).max(p[2].0));
-        // a x + b y + c >= 0 inside of each edge, at pixel centres.
-        let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
-            let (a, b) = (p[i].1 - p[j].1, p[j].0 - p[i].0);
-            (a, b, -(a * p[i].0 + b * p[i].1) + self.grow * a.hypot(b))
-        });
-        let depth_x = ((p[1].2 - p[0].2) * (p[2].1 - p[0].1) - (p[2].2 - p[0].2) * (p[1].1 - p[0].1)) / double_area;
-        let depth_y = ((p[2].2 - p[0].2) * (p[1].0 - p[0].0) - (p[1].2 - p[0].2) * (p[2].0 - p[0].0)) / double_area;
-
-        for row in rows(top - 1.0, height)..rows(bottom + 1.0, height) {
-            let y = row as f64 + 0.5;
-            let (mut from, mut to) = (left - 1.0, right + 1.0);
-            for (a, b, c) in edges {
-                let rest = b * y + c;
-                if a > 0.0 {
-                    from = from.max(-rest / a);
-                } else if a < 0.0 {
-                    to = to.min(-rest / a);
-                } else if rest < 0.0 {
-                    to = f64::NEG_INFINITY;
-                }
-            }
-            let (from, to) = (rows((from - 0.5).ceil(), width), rows((to - 0.5).floor() + 1.0, width));
-            for column in from..to {
-                let x = column as f64 + 0.5;
-                let depth = (p[0].2 + depth_x * (x - p[0].0) + depth_y * (y - p[0].1)) as f32;
-                let pixel = row * self.width + column;
-                if depth > self.depth[pixel] * self.margin {
-                    self.depth[pixel] = depth;
-                    self.owner[pixel] = owner;
-                }
-            }
+        let (from, to) = (rows((from - 0.5).ceil(), width), rows((to - 0.5).floor() + 1.0, width));
+        for column in from..to {
+            let x = column as f64 + 0.5;
+            let depth = (p[0].2 + depth_x * (x - p[0].0) + depth_y * (y - p[0].1)) as f32;
+            touch(row * size.0 + column, depth);
         }
     }
 }

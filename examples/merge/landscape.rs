@@ -4,6 +4,8 @@ use fastrand::Rng;
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_to_mat4};
 use glam::{Mat4, Vec3, vec3};
 
+use crate::camera::box_corners;
+use crate::rectangle::rectangle;
 use crate::scene::{Mesh, Object, Scene};
 
 pub const NEAR: f32 = 0.1;
@@ -70,7 +72,7 @@ impl Landscape {
         }
         let boxes = (0..boxes).filter_map(|_| {
             let (low, high) = standing([25.0, 600.0], [0.5, 4.0], [0.5, 4.0]);
-            rectangle(low, high, &clip_from_world)
+            rectangle(low, high, &clip_from_world, NEAR).filter(is_on_screen)
         });
 
         let mut landscape = Self {
@@ -80,7 +82,7 @@ impl Landscape {
             interleaved: Vec::new(),
             clip_from_world,
         };
-        let nearest = |o: &Object| corners(o.lo, o.hi).map(|p| (clip_from_world * p.extend(1.0)).w);
+        let nearest = |o: &Object| box_corners(o.lo, o.hi).map(|p| (clip_from_world * p.extend(1.0)).w);
         let nearest = |o: &Object| nearest(o).into_iter().fold(f32::INFINITY, f32::min);
         let mut order = Vec::new();
         for (is_terrain, objects) in [(true, &mut landscape.terrain), (false, &mut landscape.foreground)] {
@@ -126,19 +128,6 @@ fn sheet(column: u32, row: u32) -> Mesh {
     mesh
 }
 
-/// The rectangle around a box and its least w; none where it lies off screen in part, or behind the eye.
-fn rectangle(low: Vec3, high: Vec3, clip: &Mat4) -> Option<[f32; 5]> {
-    let mut r = [1.0f32, 1.0, -1.0, -1.0, f32::INFINITY];
-    for p in corners(low, high).map(|p| *clip * p.extend(1.0)) {
-        let (x, y) = (p.x / p.w, p.y / p.w);
-        if p.w <= NEAR || x.abs() > 1.0 || y.abs() > 1.0 {
-            return None;
-        }
-        r = [r[0].min(x), r[1].min(y), r[2].max(x), r[3].max(y), r[4].min(p.w)];
-    }
-    Some(r)
-}
-
-fn corners(low: Vec3, high: Vec3) -> [Vec3; 8] {
-    std::array::from_fn(|i| Vec3::select(glam::BVec3::new(i & 1 == 0, i & 2 == 0, i & 4 == 0), low, high))
+fn is_on_screen(&[x_min, y_min, x_max, y_max, _]: &[f32; 5]) -> bool {
+    x_min >= -1.0 && y_min >= -1.0 && x_max <= 1.0 && y_max <= 1.0
 }

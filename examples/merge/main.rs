@@ -11,11 +11,16 @@
 //! table gives the share of those that each way culls, and how many were culled that the z-buffer shows, which must be
 //! none. Drawing includes the clearing of the buffers; times are medians, the two ways measured in turn.
 
+#[path = "../demo/camera.rs"]
+#[allow(dead_code, reason = "the demo uses more of it")]
+mod camera;
 mod landscape;
 mod measure;
 #[path = "../demo/raster.rs"]
 #[allow(dead_code, reason = "the demo uses more of it")]
 mod raster;
+#[path = "../shared/rectangle.rs"]
+mod rectangle;
 #[path = "../demo/scene.rs"]
 #[allow(dead_code, reason = "the demo uses more of it")]
 mod scene;

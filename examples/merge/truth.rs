@@ -2,6 +2,7 @@
 
 use crate::landscape::{Landscape, NEAR};
 use crate::raster::ZBuffer;
+use crate::rectangle::hides;
 
 pub struct Truth {
     /// For each box: is it hidden?
@@ -23,25 +24,8 @@ impl Truth {
                 buffer.draw(object, 0, &landscape.clip_from_world, NEAR);
             }
         }
-        let is_hidden: Vec<bool> = landscape.boxes.iter().map(|b| hides(&exact, b, 1.0, 0.0)).collect();
-        let may_be_hidden = landscape.boxes.iter().map(|b| hides(&generous, b, 1.0 + 1e-5, 1e-3)).collect();
+        let is_hidden: Vec<bool> = landscape.boxes.iter().map(|b| hides(&exact, b, NEAR, 1.0, 0.0)).collect();
+        let may_be_hidden = landscape.boxes.iter().map(|b| hides(&generous, b, NEAR, 1.0 + 1e-5, 1e-3)).collect();
         Self { hidden: is_hidden.iter().filter(|h| **h).count(), is_hidden, may_be_hidden }
     }
-}
-
-/// Is everything nearer than the rectangle, in all pixels that it touches? Depths are taken times `factor`, and the
-/// rectangle is drawn in by `inset` pixels.
-fn hides(buffer: &ZBuffer, &[x_min, y_min, x_max, y_max, w]: &[f32; 5], factor: f32, inset: f64) -> bool {
-    let across = |x: f32| (f64::from(x) * 0.5 + 0.5) * buffer.width as f64;
-    let down = |y: f32| (0.5 - f64::from(y) * 0.5) * buffer.height as f64;
-    // From the first pixel touched to the one after the last.
-    let pixels = |low: f64, high: f64, end: usize| {
-        let first = ((low + inset).floor() as usize).min(end - 1);
-        first..((high - inset).ceil() as usize).clamp(first + 1, end)
-    };
-    let columns = pixels(across(x_min), across(x_max), buffer.width);
-    pixels(down(y_max), down(y_min), buffer.height).all(|row| {
-        let row = &buffer.depth[row * buffer.width..][..buffer.width];
-        row[columns.clone()].iter().all(|depth| depth * factor > NEAR / w)
-    })
 }
