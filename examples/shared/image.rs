@@ -1,7 +1,7 @@
 //! Pictures: pixels, text, lines, PNG files.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
@@ -92,7 +92,11 @@ impl Image {
 
     pub fn save(&self, path: &Path) -> Result<()> {
         let file = File::create(path).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-        let mut encoder = png::Encoder::new(BufWriter::new(file), self.width as u32, self.height as u32);
+        self.write_png(BufWriter::new(file))
+    }
+
+    pub fn write_png(&self, out: impl Write) -> Result<()> {
+        let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::High);

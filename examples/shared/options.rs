@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use masked_occlusion_culling::{Implementation, UpdateRule};
 
 /// An update rule, in the numbers of the C interface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Rule {
     ThreeLayer = 0,
     Quick = 1,
@@ -12,7 +12,7 @@ pub enum Rule {
 }
 
 /// An instruction set, in the numbers of the C++ class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Isa {
     Scalar = -1,
     Sse2 = 0,

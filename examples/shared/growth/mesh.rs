@@ -32,6 +32,12 @@ impl Mesh {
         Self { vertices, indices }
     }
 
+    /// Triangles with three vertices of their own each, counter-clockwise as seen from the front, drawn in their order.
+    pub fn soup(triangles: &[[Vec3; 3]]) -> Self {
+        let vertices: Vec<[f32; 4]> = triangles.iter().flatten().map(|p| [p.x, p.y, 0.0, p.z]).collect();
+        Self { indices: (0..vertices.len() as u32).collect(), vertices }
+    }
+
     /// x, y, nothing, z of each vertex.
     pub fn vertices(&self) -> &[[f32; 4]] {
         &self.vertices

@@ -9,8 +9,8 @@ use super::job::Study;
 use super::table::Row;
 use crate::Result;
 
-/// Blue and orange are told apart by everyone; a third library would need a third colour.
-const COLOURS: [RGBColor; 2] = [RGBColor(0, 90, 181), RGBColor(220, 90, 0)];
+/// Blue, orange and grey are told apart by everyone.
+const COLOURS: [RGBColor; 3] = [RGBColor(0, 90, 181), RGBColor(220, 90, 0), RGBColor(120, 120, 120)];
 
 /// A plot of one or two studies.
 struct Plot {

@@ -93,6 +93,25 @@ pub fn sheets(count: u32, nearest_first: bool) -> Scene {
     Scene::new(meshes, Vec3::ZERO, Vec3::NEG_Z)
 }
 
+/// Right-angled isosceles triangles with legs of this many pixels of a screen `height` high, anywhere on it and turned anyhow,
+/// from the farthest to the nearest: none is hidden when it is drawn. After section 4.3 of the HPG 2016 paper.
+pub fn right_triangles(leg: f32, count: u32, height: u32) -> Scene {
+    let mut rng = Rng::with_seed(7);
+    let triangle = |i: u32| {
+        let distance = 20.0 + 180.0 * (1.0 - i as f32 / count as f32);
+        // The size of a pixel at that distance.
+        let pixel = 2.0 * HALF_HEIGHT * distance / height as f32;
+        let half = HALF_HEIGHT * distance;
+        let middle = vec3((2.0 * rng.f32() - 1.0) * half * ASPECT, (2.0 * rng.f32() - 1.0) * half, -distance);
+        let (sin, cos) = (TAU * rng.f32()).sin_cos();
+        let (u, v) = (vec3(cos, sin, 0.0) * leg * pixel, vec3(-sin, cos, 0.0) * leg * pixel);
+        let corner = middle - (u + v) / 3.0;
+        [corner, corner + u, corner + v]
+    };
+    let triangles: Vec<[Vec3; 3]> = (0..count).map(triangle).collect();
+    Scene::new(vec![Mesh::soup(&triangles)], Vec3::ZERO, Vec3::NEG_Z)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::culler::{Culler, PROBES, frame, hidden};
@@ -113,6 +132,7 @@ mod tests {
         }
         assert_eq!(lumps().triangles(), 100_000);
         assert_eq!(sheets(8, true).triangles(), 16_000);
+        assert_eq!(right_triangles(10.0, 500, 1080).triangles(), 500);
     }
 
     /// That what is measured is drawn: how much of the screen each scene hides.
@@ -128,6 +148,7 @@ mod tests {
         assert_eq!(share(sheets(1, true)), 1.0);
         assert_eq!(share(sheets(3, false)), 1.0);
         assert_eq!(share(terrain(3_000)), 1.0);
+        assert!(share(right_triangles(200.0, 500, 360)) > 0.9);
         let lumps = share(lumps());
         assert!((0.5..1.0).contains(&lumps), "{lumps}");
     }

@@ -1,0 +1,49 @@
+//! Rectangles against the farthest depths of tiles.
+
+use super::lanes::{COUNT, Lanes, Pass};
+use super::reduce::TILE;
+
+/// Is every tile from the first to the last nearer than `depth`?
+pub struct Query<'a> {
+    pub farthest: &'a [f32],
+    /// Floats from one row of tiles to the next.
+    pub row: usize,
+    pub first: [usize; 2],
+    pub last: [usize; 2],
+    pub depth: f32,
+}
+
+/// The first and last tile that an interval of [-1, 1] touches, of `size` pixels. One that ends on a boundary does not
+/// touch what is beyond.
+#[inline(always)]
+pub fn tiles(min: f32, max: f32, size: u32) -> (usize, usize) {
+    let pixel = |v: f32| (f64::from(v.clamp(-1.0, 1.0)) * 0.5 + 0.5) * f64::from(size);
+    let first = (pixel(min) as usize).min(size as usize - 1);
+    let end = pixel(max);
+    let whole = end as usize;
+    let last = if whole as f64 == end { whole.saturating_sub(1) } else { whole };
+    (first / TILE, last.clamp(first, size as usize - 1) / TILE)
+}
+
+impl Pass for Query<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, s: L) -> bool {
+        let depth = s.f(self.depth);
+        // SAFETY: there are as many numbers as the most lanes.
+        let lane = unsafe { s.load_i(COUNT.as_ptr().cast()) };
+        for y in self.first[1]..=self.last[1] {
+            for x in (self.first[0]..=self.last[0]).step_by(L::N) {
+                let tiles = &self.farthest[y * self.row + x..][..L::N];
+                // SAFETY: the slice is as long as that.
+                let nearer = s.lt(depth, unsafe { s.load(tiles.as_ptr()) });
+                let beyond = s.lt_i(s.i((self.last[0] - x) as i32), lane);
+                if s.bits(s.or_m(nearer, beyond)) != (1 << L::N) - 1 {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,128 @@
+//! Triangle setup: edge functions and depth planes, as many triangles at a time as there are lanes.
+
+use super::lanes::{COUNT, Lanes, MOST};
+use super::list::TriangleList;
+use super::screen::{Screen, pixels};
+
+/// What is outside of no edge, and what lies beyond everything.
+const FAR: f32 = 1e9;
+
+/// What the filling of triangles needs, a lane a triangle. Edge functions count in steps of the grid times pixels, and are
+/// not negative inside.
+#[derive(Default)]
+#[repr(C, align(64))]
+pub struct Batch {
+    /// The first block, and how many across and down.
+    pub block: [[i32; MOST]; 2],
+    pub blocks: [[i32; MOST]; 2],
+    /// Edge functions at the first block's first pixel, and their steps from pixel to pixel.
+    pub edge: [[i32; MOST]; 3],
+    pub edge_x: [[i32; MOST]; 3],
+    pub edge_y: [[i32; MOST]; 3],
+    /// Depth at the first block's first pixel, and its steps; and the nearest vertex.
+    pub depth: [f32; MOST],
+    pub depth_x: [f32; MOST],
+    pub depth_y: [f32; MOST],
+    pub nearest: [f32; MOST],
+    /// Where, in blocks from the first, a row of blocks enters or leaves an edge, and what to add for the next row.
+    pub cross: [[f32; MOST]; 3],
+    pub cross_step: [[f32; MOST]; 3],
+    /// What makes a crossing nothing that bounds from the left, or from the right.
+    pub not_left: [[f32; MOST]; 3],
+    pub not_right: [[f32; MOST]; 3],
+}
+
+impl Batch {
+    /// Sets up the triangles of a list from `at` on; says for which lanes there are blocks.
+    #[inline(always)]
+    pub fn set_up<L: Lanes>(&mut self, s: L, screen: &Screen, list: &TriangleList, at: usize) -> u32 {
+        let ((x0, y0, z0), (x1, y1, z1), (x2, y2, z2)) =
+            (corner(s, list, 0, at), corner(s, list, 1, at), corner(s, list, 2, at));
+        let (bits, unit) = (screen.bits, (1 << screen.bits) as f32);
+        let half = s.i((1 << bits) / 2);
+
+        // From the first to the last pixel whose centre the box around a triangle holds.
+        let (left, right) = pixels(s, bits, [x0, x1, x2], screen.width);
+        let (top, bottom) = pixels(s, bits, [y0, y1, y2], screen.height);
+        let (left, top) = (s.shr(left, L::LOG_WIDTH), s.shr(top, L::LOG_HEIGHT));
+        let across = s.add_i(s.sub_i(s.shr(right, L::LOG_WIDTH), left), s.i(1));
+        let down = s.add_i(s.sub_i(s.shr(bottom, L::LOG_HEIGHT), top), s.i(1));
+        put_i(s, &mut self.block[0], left);
+        put_i(s, &mut self.block[1], top);
+        put_i(s, &mut self.blocks[0], across);
+        put_i(s, &mut self.blocks[1], down);
+
+        // The centre of the first block's first pixel, on the grid.
+        let px = s.add_i(s.shl(left, L::LOG_WIDTH + bits), half);
+        let py = s.add_i(s.shl(top, L::LOG_HEIGHT + bits), half);
+        for (k, [(xa, ya), (xb, yb)]) in
+            [[(x0, y0), (x1, y1)], [(x1, y1), (x2, y2)], [(x2, y2), (x0, y0)]].into_iter().enumerate()
+        {
+            let (a, b) = (s.sub_i(ya, yb), s.sub_i(xb, xa));
+            let (dx, dy) = (s.sub_i(px, xa), s.sub_i(py, ya));
+            // Centres on an edge are inside of left and top ones; one less makes them outside of the others.
+            let left_or_top = s.or_m(s.lt_i(s.i(0), a), s.and_m(s.eq_i(a, s.i(0)), s.lt_i(s.i(0), b)));
+            let bias = s.select_i(left_or_top, s.i(0), s.i(-1));
+            // a * dx + b * dy + bias, divided by the grid's steps in a pixel and rounded down, which changes no sign at
+            // any pixel. In parts, so that nothing is lost: the parts above wrap around, but the sum fits.
+            let fraction = s.i((1 << bits) - 1);
+            let low = s.add_i(s.mul_i(a, s.and_i(dx, fraction)), s.mul_i(b, s.and_i(dy, fraction)));
+            let high = s.add_i(s.mul_i(a, s.shr(dx, bits)), s.mul_i(b, s.shr(dy, bits)));
+            let edge = s.add_i(high, s.shr(s.add_i(low, bias), bits));
+            put_i(s, &mut self.edge[k], edge);
+            put_i(s, &mut self.edge_x[k], a);
+            put_i(s, &mut self.edge_y[k], b);
+
+            // A block is worth looking at where its best pixel is inside: where edge + best + a * width * x >= 0.
+            let (width, height) = (1 << L::LOG_WIDTH, 1 << L::LOG_HEIGHT);
+            let best_x = s.mul_i(s.max_i(a, s.i(0)), s.i(width - 1));
+            let best_y = s.mul_i(s.max_i(b, s.i(0)), s.i(height - 1));
+            let best = s.to_f(s.add_i(edge, s.add_i(best_x, best_y)));
+            let (a, b) = (s.to_f(a), s.to_f(b));
+            let flat = s.and_m(s.le(a, s.f(0.0)), s.le(s.f(0.0), a));
+            let inverse = s.div(s.f(-1.0 / width as f32), s.select(flat, s.f(1.0), a));
+            put(s, &mut self.cross[k], s.mul(best, inverse));
+            put(s, &mut self.cross_step[k], s.mul(s.mul(b, s.f(height as f32)), inverse));
+            put(s, &mut self.not_left[k], s.select(s.lt(s.f(0.0), a), s.f(0.0), s.f(-FAR)));
+            put(s, &mut self.not_right[k], s.select(s.lt(a, s.f(0.0)), s.f(0.0), s.f(FAR)));
+        }
+
+        // The plane through the vertices.
+        let (dx1, dy1, dz1) = (s.sub_i(x1, x0), s.sub_i(y1, y0), s.sub(z1, z0));
+        let (dx2, dy2, dz2) = (s.sub_i(x2, x0), s.sub_i(y2, y0), s.sub(z2, z0));
+        let per_area = s.div(s.f(1.0), s.cross(dx1, dy2, dy1, dx2));
+        let (dx1, dy1, dx2, dy2) = (s.to_f(dx1), s.to_f(dy1), s.to_f(dx2), s.to_f(dy2));
+        let slope_x = s.mul(s.sub(s.mul(dz1, dy2), s.mul(dz2, dy1)), per_area);
+        let slope_y = s.mul(s.sub(s.mul(dz2, dx1), s.mul(dz1, dx2)), per_area);
+        let (dx, dy) = (s.to_f(s.sub_i(px, x0)), s.to_f(s.sub_i(py, y0)));
+        put(s, &mut self.depth, s.mul_add(slope_x, dx, s.mul_add(slope_y, dy, z0)));
+        put(s, &mut self.depth_x, s.mul(slope_x, s.f(unit)));
+        put(s, &mut self.depth_y, s.mul(slope_y, s.f(unit)));
+        put(s, &mut self.nearest, s.max(z0, s.max(z1, z2)));
+
+        // SAFETY: there are as many numbers as the most lanes.
+        let lane = unsafe { s.load_i(COUNT.as_ptr().cast()) };
+        let in_list = s.lt_i(lane, s.i((list.len() - at).min(L::N) as i32));
+        s.bits(s.and_m(in_list, s.and_m(s.lt_i(s.i(0), across), s.lt_i(s.i(0), down))))
+    }
+}
+
+/// A corner's x, y and depth of the triangles from `at` on.
+#[inline(always)]
+fn corner<L: Lanes>(s: L, list: &TriangleList, k: usize, at: usize) -> (L::I, L::I, L::F) {
+    let [x, y, z] = list.read_at(k, at);
+    // SAFETY: a vector's worth can be read for each triangle of the list.
+    unsafe { (s.load_i(x), s.load_i(y), s.load(z.cast())) }
+}
+
+#[inline(always)]
+fn put_i<L: Lanes>(s: L, to: &mut [i32; MOST], x: L::I) {
+    // SAFETY: there is room for the most lanes.
+    unsafe { s.store_i(to.as_mut_ptr(), x) }
+}
+
+#[inline(always)]
+fn put<L: Lanes>(s: L, to: &mut [f32; MOST], x: L::F) {
+    // SAFETY: there is room for the most lanes.
+    unsafe { s.store(to.as_mut_ptr(), x) }
+}
