@@ -70,7 +70,7 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
             .build_cartesian_2d(across.clone().log_scale(), up)?;
         chart
             .configure_mesh()
-            .x_desc("milliseconds: all views drawn and all queries, one thread")
+            .x_desc("milliseconds: all views drawn and all queries, one thread; small dots are small buffers")
             .y_desc("percent of the hidden objects culled")
             .label_style(FONT)
             .x_label_formatter(&|v| format!("{}", (v * 100.0).round() / 100.0))
@@ -105,7 +105,7 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
         if !baselines.is_empty() {
             chart
                 .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
-                .label("z-buffer of all pixels (HiZ)")
+                .label("z-buffer of all pixels (HiZ), 1920x1080")
                 .legend(|at| Circle::new(at, 4, BLACK.filled()));
         }
         for order in crate::setting::ORDERS {

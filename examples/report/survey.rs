@@ -64,7 +64,6 @@ pub struct Survey {
     pub name: String,
     pub objects: usize,
     pub triangles: usize,
-    pub views: usize,
     pub points: Vec<Point>,
     /// What an exact z-buffer of the screen culls of the hidden objects and boxes, and its least depth of each 8x4 pixels.
     pub exact: [Share; 2],
@@ -80,7 +79,6 @@ pub fn survey(subject: &Subject, settings: &[Setting], repeats: u32, mut tick: i
         name: subject.name.clone(),
         objects: subject.objects.len(),
         triangles: subject.triangles(),
-        views: subject.views.len(),
         points: settings.iter().map(Point::new).collect(),
         exact: Default::default(),
         ceiling: Default::default(),

@@ -113,7 +113,9 @@ pub fn points(survey: &Survey) -> Table {
 /// For every value of something, the mean over scenes of the time over that of the plain setting with the same rule and order, and
 /// how much more or less it culls.
 pub fn effect<K: Ord + Clone>(surveys: &[Survey], what: &str, key: impl Fn(&Setting) -> Option<(K, String)>) -> Table {
-    let mut groups: BTreeMap<(K, u8), (String, Vec<[f64; 3]>)> = BTreeMap::new();
+    /// What a value is called, and for each scene and order time, objects, boxes.
+    type Group = (String, Vec<[f64; 3]>);
+    let mut groups: BTreeMap<(K, u8), Group> = BTreeMap::new();
     for survey in surveys {
         for p in &survey.points {
             let Some((k, name)) = key(&p.setting) else { continue };
@@ -146,7 +148,7 @@ pub fn effect<K: Ord + Clone>(surveys: &[Survey], what: &str, key: impl Fn(&Sett
 pub fn effects(surveys: &[Survey]) -> Vec<Table> {
     let best = best_isa();
     let usual = |s: &Setting| s.isa == best && s.threads == 1;
-    vec![
+    let tables = [
         effect(surveys, "resolution", move |s| {
             (usual(s) && s.buffers == 1).then(|| (u32::MAX - s.size.0, format!("{}x{}", s.size.0, s.size.1)))
         }),
@@ -161,7 +163,9 @@ pub fn effects(surveys: &[Survey]) -> Vec<Table> {
             let has_both = s.isa == best && s.size == SCREEN && s.buffers <= 2 && s.order != Order::Far;
             has_both.then(|| ((s.buffers, s.threads), format!("{}, {how}", s.threads)))
         }),
-    ]
+    ];
+    // A short run has a single size, and not that of the screen.
+    tables.into_iter().filter(|t| !t.rows.is_empty()).collect()
 }
 
 pub fn passes(rows: &[passes::Row]) -> Table {
