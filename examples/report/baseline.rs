@@ -28,12 +28,7 @@ pub struct HizCuller {
 
 impl HizCuller {
     pub fn new() -> Self {
-        Self {
-            hiz: RefCell::new(Hiz::new(8, 8)),
-            near: 0.0,
-            positions: HashMap::new(),
-            is_generated: Cell::new(false),
-        }
+        Self { hiz: RefCell::new(Hiz::new(8, 8)), near: 0.0, positions: HashMap::new(), is_generated: Cell::new(false) }
     }
 }
 
@@ -114,4 +109,3 @@ pub fn survey(subject: &Subject, repeats: u32, mut tick: impl FnMut()) -> Result
     let baselines = ORDERS.into_iter().zip(found);
     Ok(baselines.map(|(order, (seconds, share))| Baseline { order, seconds, percent: share.percent() }).collect())
 }
-

@@ -19,9 +19,8 @@ pub const PLACES: [(Vec3, Vec3); 3] = [
 
 pub fn generate() -> Scene {
     let index = |p: IVec3| ((p.y * SIZE + p.z) * SIZE + p.x) as usize;
-    let filled: Vec<bool> = (0..HEIGHT * SIZE * SIZE)
-        .map(|i| is_filled(ivec3(i % SIZE, i / (SIZE * SIZE), i / SIZE % SIZE)))
-        .collect();
+    let filled: Vec<bool> =
+        (0..HEIGHT * SIZE * SIZE).map(|i| is_filled(ivec3(i % SIZE, i / (SIZE * SIZE), i / SIZE % SIZE))).collect();
     // Beyond the sides and the bottom there is rock, so that the world has no faces there; above it there is air.
     let at = |p: IVec3| {
         let inside = p.cmpge(IVec3::ZERO).all() && p.cmplt(ivec3(SIZE, HEIGHT, SIZE)).all();
@@ -90,7 +89,9 @@ fn smooth(x: f32, y: f32, z: f32) -> f32 {
 
 /// A number from -1 to 1 for each place.
 fn noise(p: IVec3) -> f32 {
-    let mut n = (p.x as u32).wrapping_mul(0x8da6_b343) ^ (p.y as u32).wrapping_mul(0xd816_3841) ^ (p.z as u32).wrapping_mul(0xcb1a_b31f);
+    let mut n = (p.x as u32).wrapping_mul(0x8da6_b343)
+        ^ (p.y as u32).wrapping_mul(0xd816_3841)
+        ^ (p.z as u32).wrapping_mul(0xcb1a_b31f);
     n = (n ^ (n >> 15)).wrapping_mul(0x2c1b_3c6d);
     n = (n ^ (n >> 12)).wrapping_mul(0x297a_2d39);
     (n ^ (n >> 15)) as f32 / u32::MAX as f32 * 2.0 - 1.0

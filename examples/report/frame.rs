@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use masked_occlusion_culling::{
-    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings, VertexLayout,
-    Vertices,
+    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings,
+    VertexLayout, Vertices,
 };
 
 use crate::Result;
@@ -96,11 +96,8 @@ pub struct Frames<'a> {
 
 impl<'a> Frames<'a> {
     pub fn new(setting: &Setting, occluders: &'a [Occluder], near: f32) -> Result<Self> {
-        let settings = Settings {
-            implementation: setting.isa.into(),
-            update_rule: setting.rule.into(),
-            ..Settings::default()
-        };
+        let settings =
+            Settings { implementation: setting.isa.into(), update_rule: setting.rule.into(), ..Settings::default() };
         let buffer = |_| -> Result<_> {
             let mut moc = MaskedOcclusionCulling::new(settings);
             moc.set_near_clip_plane(near)?;

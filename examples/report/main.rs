@@ -123,7 +123,9 @@ fn run(args: &Args) -> Result<()> {
     say(&format!("\nwritten to {}", args.out.display()));
     match (found.falsely(), found.other_bits()) {
         (0, 0) => Ok(()),
-        (falsely, bits) => Err(format!("{falsely} falsely culled, {bits} buffers with other bits than they should have").into()),
+        (falsely, bits) => {
+            Err(format!("{falsely} falsely culled, {bits} buffers with other bits than they should have").into())
+        }
     }
 }
 
@@ -135,7 +137,8 @@ fn measure_all(args: &Args, extent: Extent, subjects: &[Subject]) -> Result<Find
     let limit = Duration::from_secs_f64(limit);
     let jobs = growth::job::jobs(most);
     let views: usize = subjects.iter().map(|s| s.views.len()).sum();
-    let steps = views * (settings.len() + ORDERS.len()) + 2 * subjects.len() + jobs.len() + sizes::rows() + merging::rows();
+    let steps =
+        views * (settings.len() + ORDERS.len()) + 2 * subjects.len() + jobs.len() + sizes::rows() + merging::rows();
     let style = "{bar:40} {pos} of {len} steps, {elapsed} of about {duration}: {msg}";
     let bar = ProgressBar::new(steps as u64).with_style(ProgressStyle::with_template(style)?);
 

@@ -6,9 +6,7 @@
 
 use std::time::Instant;
 
-use masked_occlusion_culling::{
-    DrawOptions, MaskedOcclusionCulling, Settings, TriList, Vertices, transform_vertices,
-};
+use masked_occlusion_culling::{DrawOptions, MaskedOcclusionCulling, Settings, TriList, Vertices, transform_vertices};
 
 use crate::Result;
 use crate::frame::{LAYOUT, Occluder, occluders};

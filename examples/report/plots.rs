@@ -62,7 +62,10 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
     let up = (least - 4.0).max(0.0)..102.0;
     svg(|root| {
         let mut chart = ChartBuilder::on(root)
-            .caption(format!("{}: {} objects, {} triangles", survey.name, survey.objects, survey.triangles), ("sans-serif", 20))
+            .caption(
+                format!("{}: {} objects, {} triangles", survey.name, survey.objects, survey.triangles),
+                ("sans-serif", 20),
+            )
             .margin(12)
             .margin_right(24)
             .x_label_area_size(48)
@@ -79,7 +82,10 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
         for (share, name, colour) in lines {
             let y = share.percent();
             let line = LineSeries::new([(across.start, y), (across.end, y)], colour.stroke_width(1));
-            chart.draw_series(line)?.label(name).legend(move |(x, y)| PathElement::new([(x - 6, y), (x + 6, y)], colour));
+            chart
+                .draw_series(line)?
+                .label(name)
+                .legend(move |(x, y)| PathElement::new([(x - 6, y), (x + 6, y)], colour));
         }
         let mut dots: Vec<((f64, f64), Order, i32, ShapeStyle)> = Vec::new();
         for &p in &points {
@@ -92,7 +98,9 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
         }
         let of = |order| dots.iter().filter(move |d| d.1 == order);
         chart.draw_series(of(Order::Near).map(|&(at, _, r, style)| Circle::new(at, r, style)))?;
-        let square = |&(at, _, r, style): &((f64, f64), Order, i32, ShapeStyle)| EmptyElement::at(at) + Rectangle::new([(-r, -r), (r, r)], style);
+        let square = |&(at, _, r, style): &((f64, f64), Order, i32, ShapeStyle)| {
+            EmptyElement::at(at) + Rectangle::new([(-r, -r), (r, r)], style)
+        };
         chart.draw_series(of(Order::Random).map(square))?;
         chart.draw_series(of(Order::Far).map(|&(at, _, r, style)| TriangleMarker::new(at, r + 2, style)))?;
         for rule in crate::setting::RULES {
@@ -110,7 +118,8 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
         }
         for order in crate::setting::ORDERS {
             let style = ShapeStyle { color: GREY.into(), filled: true, stroke_width: 1 };
-            let entry = chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?.label(format!("drawn {order}"));
+            let entry =
+                chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?.label(format!("drawn {order}"));
             match order {
                 Order::Near => entry.legend(move |at| Circle::new(at, 4, style)),
                 Order::Random => entry.legend(move |(x, y)| Rectangle::new([(x - 4, y - 4), (x + 4, y + 4)], style)),

@@ -151,7 +151,8 @@ mod tests {
         assert!(ORDERS.iter().all(|order| usual.iter().any(|s| s.order == *order)));
         assert!(SIZES.iter().all(|size| usual.iter().any(|s| s.size == *size)));
         assert!(available_isas().iter().all(|isa| usual.iter().any(|s| s.isa == *isa)));
-        let product = RULES.len() * SIZES.len() * ORDERS.len() * BUFFERS.len() * available_isas().len() * threads().len();
+        let product =
+            RULES.len() * SIZES.len() * ORDERS.len() * BUFFERS.len() * available_isas().len() * threads().len();
         assert_eq!(settings(Extent::Every).len(), product);
     }
 }

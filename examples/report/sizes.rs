@@ -35,7 +35,12 @@ pub const fn rows() -> usize {
     LEGS.len()
 }
 
-pub fn study(cullers: &mut [Box<dyn Culler>], size: (u32, u32), limit: Duration, mut tick: impl FnMut()) -> Result<Vec<Row>> {
+pub fn study(
+    cullers: &mut [Box<dyn Culler>],
+    size: (u32, u32),
+    limit: Duration,
+    mut tick: impl FnMut(),
+) -> Result<Vec<Row>> {
     let row = |leg: u32| -> Result<Row> {
         let triangles = TRIANGLES.min(2 * PIXELS / (leg * leg));
         let scene = right_triangles(leg as f32, triangles, size.1);

@@ -36,7 +36,8 @@ pub type Rectangle = Option<[f32; 5]>;
 
 impl Subject {
     pub fn generated() -> Vec<Self> {
-        let views = |places: &[(Vec3, Vec3)], near| places.iter().map(|&(eye, look)| View::new(eye, look, near)).collect();
+        let views =
+            |places: &[(Vec3, Vec3)], near| places.iter().map(|&(eye, look)| View::new(eye, look, near)).collect();
         let (eye, look) = town::camera();
         let landscape = Landscape::generate(ASPECT, 0);
         let of_landscape = View { clip: landscape.clip_from_world, near: landscape::NEAR };
@@ -84,7 +85,10 @@ impl Subject {
     /// The rectangles of all objects in a view, by object. Those out of view have none either: an engine culls them before.
     pub fn rectangles(&self, view: &View) -> Vec<Rectangle> {
         let in_view = |o: &Object| in_view(o.lo, o.hi, &view.clip);
-        self.objects.iter().map(|o| in_view(o).then(|| rectangle(o.lo, o.hi, &view.clip, view.near)).flatten()).collect()
+        self.objects
+            .iter()
+            .map(|o| in_view(o).then(|| rectangle(o.lo, o.hi, &view.clip, view.near)).flatten())
+            .collect()
     }
 
     /// Boxes of half a percent of the scene's size, anywhere in it and at least in part on the screen.

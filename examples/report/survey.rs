@@ -25,7 +25,8 @@ impl Share {
 
     /// How many of those that are `wanted` are `found`.
     pub fn of(wanted: &[bool], found: impl Iterator<Item = bool>) -> Self {
-        let found: Vec<bool> = wanted.iter().zip(found).filter(|(wanted, _)| **wanted).map(|(_, found)| found).collect();
+        let found: Vec<bool> =
+            wanted.iter().zip(found).filter(|(wanted, _)| **wanted).map(|(_, found)| found).collect();
         Self { part: found.iter().filter(|f| **f).count(), whole: found.len() }
     }
 
@@ -120,7 +121,8 @@ pub fn survey(subject: &Subject, settings: &[Setting], repeats: u32, mut tick: i
             point.objects.add(Share::of(&screen.hidden_objects, of_objects.iter().copied()));
             point.boxes.add(Share::of(&screen.hidden_boxes, of_boxes.iter().copied()));
             point.falsely += both(of_objects, &own.showing_objects);
-            point.falsely += of_boxes.iter().zip(&own.may_hide_boxes).filter(|(culled, may)| **culled && !**may).count();
+            point.falsely +=
+                of_boxes.iter().zip(&own.may_hide_boxes).filter(|(culled, may)| **culled && !**may).count();
             point.on_screen += both(of_objects, &screen.showing_objects);
 
             let mut depth = vec![0.0; (setting.size.0 * setting.size.1) as usize];

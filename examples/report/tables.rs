@@ -86,8 +86,19 @@ pub fn rules(surveys: &[Survey]) -> Table {
 /// Every point of a scene.
 pub fn points(survey: &Survey) -> Table {
     let mut table = Table::new([
-        "rule", "size", "order", "buffers", "set", "threads", "draw, ms", "query, ms", "objects, %", "boxes, %", "falsely",
-        "on screen", "leaking, %",
+        "rule",
+        "size",
+        "order",
+        "buffers",
+        "set",
+        "threads",
+        "draw, ms",
+        "query, ms",
+        "objects, %",
+        "boxes, %",
+        "falsely",
+        "on screen",
+        "leaking, %",
     ]);
     for p in &survey.points {
         let Setting { rule, size, order, buffers, isa, threads } = p.setting;
@@ -192,8 +203,16 @@ pub fn sizes(rows: &[sizes::Row], libraries: &[String]) -> Table {
 
 pub fn merging(rows: &[merging::Row]) -> Table {
     let mut table = Table::new([
-        "size, rule", "terrain, ms", "foreground, ms", "both, ms", "merge, ms", "merge, %", "one buffer, ms", "one buffer, %",
-        "merged, %", "falsely",
+        "size, rule",
+        "terrain, ms",
+        "foreground, ms",
+        "both, ms",
+        "merge, ms",
+        "merge, %",
+        "one buffer, ms",
+        "one buffer, %",
+        "merged, %",
+        "falsely",
     ]);
     for row in rows {
         let m = &row.measured;

@@ -61,8 +61,7 @@ unsafe fn cross(a: __m128i, b: __m128i, c: __m128i, d: __m128i) -> __m128 {
 
 impl Lanes for Avx2 {
     const N: usize = 8;
-    const LOG_WIDTH: u32 = 2;
-    const LOG_HEIGHT: u32 = 1;
+    const LOG_HEIGHT: u32 = 0;
     type F = __m256;
     type I = __m256i;
     type M = __m256i;
@@ -71,7 +70,7 @@ impl Lanes for Avx2 {
         f(x: f32) -> __m256 = _mm256_set1_ps(x);
         i(x: i32) -> __m256i = _mm256_set1_epi32(x);
         bits_of(x: __m256) -> __m256i = _mm256_castps_si256(x);
-        from_bits(x: __m256i) -> __m256 = _mm256_castsi256_ps(x);
+        float_of(x: __m256i) -> __m256 = _mm256_castsi256_ps(x);
         add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
         sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
         mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
@@ -114,7 +113,7 @@ impl Lanes for Avx2 {
         bits(m: __m256i) -> u32 = _mm256_movemask_ps(_mm256_castsi256_ps(m)) as u32;
         select(m: __m256i, yes: __m256, no: __m256) -> __m256 = _mm256_blendv_ps(no, yes, _mm256_castsi256_ps(m));
         select_i(m: __m256i, yes: __m256i, no: __m256i) -> __m256i = _mm256_blendv_epi8(no, yes, m);
-        all_negative(a: __m256i) -> bool = _mm256_movemask_ps(_mm256_castsi256_ps(a)) == 0xff;
+        any_negative(a: __m256i) -> bool = _mm256_movemask_ps(_mm256_castsi256_ps(a)) != 0;
         least(a: __m256) -> f32 = {
             let four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
             let two = _mm_min_ps(four, _mm_movehl_ps(four, four));

@@ -46,8 +46,7 @@ unsafe fn cross(a: __m256i, b: __m256i, c: __m256i, d: __m256i) -> __m256 {
 
 impl Lanes for Avx512 {
     const N: usize = 16;
-    const LOG_WIDTH: u32 = 2;
-    const LOG_HEIGHT: u32 = 2;
+    const LOG_HEIGHT: u32 = 1;
     type F = __m512;
     type I = __m512i;
     type M = __mmask16;
@@ -56,7 +55,7 @@ impl Lanes for Avx512 {
         f(x: f32) -> __m512 = _mm512_set1_ps(x);
         i(x: i32) -> __m512i = _mm512_set1_epi32(x);
         bits_of(x: __m512) -> __m512i = _mm512_castps_si512(x);
-        from_bits(x: __m512i) -> __m512 = _mm512_castsi512_ps(x);
+        float_of(x: __m512i) -> __m512 = _mm512_castsi512_ps(x);
         add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
         sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
         mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
@@ -99,7 +98,7 @@ impl Lanes for Avx512 {
         bits(m: __mmask16) -> u32 = _cvtmask16_u32(m);
         select(m: __mmask16, yes: __m512, no: __m512) -> __m512 = _mm512_mask_blend_ps(m, no, yes);
         select_i(m: __mmask16, yes: __m512i, no: __m512i) -> __m512i = _mm512_mask_blend_epi32(m, no, yes);
-        all_negative(a: __m512i) -> bool = _mm512_movepi32_mask(a) == 0xffff;
+        any_negative(a: __m512i) -> bool = _mm512_movepi32_mask(a) != 0;
         least(a: __m512) -> f32 = {
             let eight = _mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps::<1>(a));
             let four = _mm_min_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps::<1>(eight));

@@ -64,12 +64,12 @@ fn push(screen: &Screen, winding: BackfaceWinding, corners: [([i32; 2], f32); 3]
         BackfaceWinding::None => area != 0,
     };
     let half = 1 << screen.bits >> 1;
-    let holds_a_centre = |axis: usize, size: u32| {
+    let holds_a_centre = |axis: usize| {
         let low = a[axis].min(b[axis]).min(c[axis]);
         let high = a[axis].max(b[axis]).max(c[axis]);
-        ((low + half - 1) >> screen.bits).max(0) <= ((high - half) >> screen.bits).min(i64::from(size) - 1)
+        ((low + half - 1) >> screen.bits).max(0) <= ((high - half) >> screen.bits).min(i64::from(screen.size[axis]) - 1)
     };
-    if front && holds_a_centre(0, screen.width) && holds_a_centre(1, screen.height) {
+    if front && holds_a_centre(0) && holds_a_centre(1) {
         let [p, q, r] = corners;
         list.push(if area < 0 { [p, r, q] } else { [p, q, r] });
     }

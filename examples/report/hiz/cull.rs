@@ -49,7 +49,11 @@ impl Cull<'_> {
         let (base, index) = (self.projected.as_ptr(), indices.as_ptr());
         // SAFETY: there are three indices for each lane, and all were compared with the number of vertices.
         let [[x0, y0, z0, m0], [x1, y1, z1, m1], [x2, y2, z2, m2]] = unsafe {
-            [s.fetch::<3>(base, index), s.fetch::<3>(base, index.wrapping_add(1)), s.fetch::<3>(base, index.wrapping_add(2))]
+            [
+                s.fetch::<3>(base, index),
+                s.fetch::<3>(base, index.wrapping_add(1)),
+                s.fetch::<3>(base, index.wrapping_add(2)),
+            ]
         };
         let valid = (1 << n) - 1;
         let in_all = s.and_i(m0, s.and_i(m1, m2));
@@ -66,8 +70,8 @@ impl Cull<'_> {
             BackfaceWinding::None => s.bits(s.or_m(negative, positive)),
         };
 
-        let (left, right) = pixels(s, self.screen.bits, [x0, x1, x2], self.screen.width);
-        let (top, bottom) = pixels(s, self.screen.bits, [y0, y1, y2], self.screen.height);
+        let (left, right) = pixels(s, self.screen.bits, [x0, x1, x2], self.screen.size[0]);
+        let (top, bottom) = pixels(s, self.screen.bits, [y0, y1, y2], self.screen.size[1]);
         let empty = s.bits(s.or_m(s.lt_i(right, left), s.lt_i(bottom, top)));
 
         let keep = in_view & regular & front & !empty;

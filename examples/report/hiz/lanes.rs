@@ -18,9 +18,10 @@ pub static COUNT: [u32; MOST] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 1
 
 pub trait Lanes: Copy {
     const N: usize;
-    /// The pixels that one vector of depths holds: a block this wide and `N / WIDTH` high, as powers of two.
-    const LOG_WIDTH: u32;
+    /// The pixels that one vector of depths holds are 8 wide and this high, as a power of two.
     const LOG_HEIGHT: u32;
+    /// So many of them are a tile of 8x8 pixels.
+    const ROWS: usize = 8 >> Self::LOG_HEIGHT;
     /// Floats, integers, and masks for either.
     type F: Copy;
     type I: Copy;
@@ -30,7 +31,7 @@ pub trait Lanes: Copy {
     fn i(self, x: i32) -> Self::I;
     /// A float's bits as an integer and back.
     fn bits_of(self, x: Self::F) -> Self::I;
-    fn from_bits(self, x: Self::I) -> Self::F;
+    fn float_of(self, x: Self::I) -> Self::F;
 
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
@@ -68,8 +69,8 @@ pub trait Lanes: Copy {
     fn select(self, m: Self::M, yes: Self::F, no: Self::F) -> Self::F;
     fn select_i(self, m: Self::M, yes: Self::I, no: Self::I) -> Self::I;
 
-    /// Is the sign bit set in every lane?
-    fn all_negative(self, a: Self::I) -> bool;
+    /// Is any lane negative?
+    fn any_negative(self, a: Self::I) -> bool;
     /// The least of the lanes.
     fn least(self, a: Self::F) -> f32;
 

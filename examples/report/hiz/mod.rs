@@ -14,9 +14,10 @@
 //! test_rect   Test   a rectangle in normalised device coordinates
 //! ```
 //!
-//! Depth is 1/w as in the library. Vertices are snapped to 1/256 pixel (coarser beyond some 2,500x2,500 pixels), edge
-//! functions are exact, with the top-left rule, and depth is what a float gives at pixel centres, not farther than at
-//! them. It uses AVX-512, AVX2 with fused multiply-add, or whatever the compiler makes of arrays of four.
+//! Depth is 1/w as in the library. Vertices are snapped to 1/256 pixel (coarser beyond some 2,300x2,300 pixels), edge
+//! functions are exact, with the top-left rule, and depth is that of pixel centres, as floats give it. In memory a tile of
+//! 8x8 pixels lies in one piece: rows of blocks were slower for triangles of 2 pixels on AVX2, and the same within
+//! the noise elsewhere. It uses AVX-512, AVX2 with fused multiply-add, or whatever the compiler makes of arrays of eight.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -40,7 +41,7 @@ mod vertices;
 use glam::Mat4;
 use masked_occlusion_culling::{BackfaceWinding, Implementation};
 
-use lanes::{Lanes, MOST, Pass, Words};
+use lanes::{MOST, Words};
 use list::TriangleList;
 use reduce::TILE;
 use screen::Screen;
@@ -51,8 +52,8 @@ pub struct Hiz {
     /// Which triangles face away.
     pub winding: BackfaceWinding,
     screen: Screen,
-    block: Block,
-    /// Row after row of blocks; from `start` on, where a cache line begins.
+    /// Tile after tile of 8x8 pixels, so that small triangles touch few pages of memory; from `start` on, where a cache
+    /// line begins.
     depth: Vec<f32>,
     start: usize,
     /// The farthest depth of each tile, and room for a vector behind each row.
@@ -64,23 +65,6 @@ pub struct Hiz {
     list: TriangleList,
 }
 
-/// Pixels that lie side by side in memory: a vector's.
-#[derive(Clone, Copy)]
-struct Block {
-    log_width: u32,
-    log_height: u32,
-}
-
-struct BlockOfLanes;
-
-impl Pass for BlockOfLanes {
-    type Output = Block;
-    #[inline(always)]
-    fn run<L: Lanes>(self, _: L) -> Block {
-        Block { log_width: L::LOG_WIDTH, log_height: L::LOG_HEIGHT }
-    }
-}
-
 impl Hiz {
     /// A cleared buffer, on the best instruction set that the processor has.
     pub fn new(width: u32, height: u32) -> Self {
@@ -90,15 +74,12 @@ impl Hiz {
     /// A cleared buffer on `level`, or on the next lower that there is: AVX-512, AVX2 or scalar.
     pub fn with_level(width: u32, height: u32, level: Implementation) -> Self {
         let level = lanes::usable(level);
-        // SAFETY: it is usable.
-        let block = unsafe { lanes::run(level, BlockOfLanes) };
         let [columns, rows] = [width, height].map(|size| (size as usize).div_ceil(TILE));
         let depth = vec![0.0; columns * rows * TILE * TILE + MOST];
-        Self {
+        let mut new = Self {
             level,
             winding: BackfaceWinding::default(),
             screen: Screen::new(width, height),
-            block,
             start: depth.as_ptr().align_offset(64),
             depth,
             farthest: vec![0.0; (columns + MOST) * rows],
@@ -106,7 +87,9 @@ impl Hiz {
             projected: Vec::new(),
             is_projected: false,
             list: TriangleList::default(),
-        }
+        };
+        new.clear();
+        new
     }
 
     /// The instruction set that is used.
@@ -121,12 +104,12 @@ impl Hiz {
     }
 
     fn tiles(&self) -> [usize; 2] {
-        [self.screen.width, self.screen.height].map(|size| (size as usize).div_ceil(TILE))
+        self.screen.size.map(|size| (size as usize).div_ceil(TILE))
     }
 
-    /// Floats from one row of blocks to the next.
+    /// Floats from one row of tiles to the next.
     fn stride(&self) -> usize {
-        self.tiles()[0] * TILE << self.block.log_height
+        self.tiles()[0] * TILE * TILE
     }
 
     fn depth_range(&self) -> std::ops::Range<usize> {
@@ -138,6 +121,19 @@ impl Hiz {
     pub fn clear(&mut self) {
         let range = self.depth_range();
         self.depth[range].fill(0.0);
+        // What of the last tiles lies beyond the screen must not be what is farthest in them.
+        let [width, height] = self.screen.size.map(|size| size as usize);
+        for y in 0..height.next_multiple_of(TILE) {
+            for x in if y < height { width } else { 0 }..width.next_multiple_of(TILE) {
+                let place = self.place(x, y);
+                self.depth[place] = f32::INFINITY;
+            }
+        }
+    }
+
+    /// Where the depth of a pixel is.
+    fn place(&self, x: usize, y: usize) -> usize {
+        self.start + y / TILE * self.stride() + (x / TILE * TILE + y % TILE) * TILE + x % TILE
     }
 
     /// Geom: positions (x, y, z, anything) to clip space. 16 bytes a vertex is the fastest to read, and what
@@ -149,6 +145,7 @@ impl Hiz {
     }
 
     /// Geom, for vertices (x, y, anything, w) that are in clip space already.
+    #[cfg(test)]
     pub fn set_clip_space(&mut self, vertices: &[[f32; 4]]) {
         self.is_projected = false;
         self.clip.clear();
@@ -172,6 +169,7 @@ impl Hiz {
     }
 
     /// How many triangles wait for `raster`.
+    #[cfg(test)]
     pub fn waiting(&self) -> usize {
         self.list.len()
     }
@@ -187,9 +185,9 @@ impl Hiz {
 
     /// Gen: the farthest depth of each tile, for `test_rect`.
     pub fn generate(&mut self) {
-        let (tiles, range, stride) = (self.tiles(), self.depth_range(), self.stride());
+        let (tiles, range) = (self.tiles(), self.depth_range());
         let row = tiles[0] + MOST;
-        let pass = reduce::Reduce { depth: &self.depth[range], stride, tiles, farthest: &mut self.farthest, row };
+        let pass = reduce::Reduce { depth: &self.depth[range], tiles, farthest: &mut self.farthest, row };
         // SAFETY: the level is usable.
         unsafe { lanes::run(self.level, pass) };
     }
@@ -203,8 +201,9 @@ impl Hiz {
         if x_max <= -1.0 || x_min >= 1.0 || y_max <= -1.0 || y_min >= 1.0 {
             return true;
         }
-        let (left, right) = query::tiles(x_min, x_max, self.screen.width);
-        let (top, bottom) = query::tiles(-y_max, -y_min, self.screen.height);
+        let [width, height] = self.screen.size;
+        let (left, right) = query::tiles(x_min, x_max, width as u32);
+        let (top, bottom) = query::tiles(-y_max, -y_min, height as u32);
         let row = self.tiles()[0] + MOST;
         let (first, last) = ([left, top], [right, bottom]);
         // SAFETY: the level is usable.
@@ -214,15 +213,15 @@ impl Hiz {
     }
 
     /// The depth of a pixel, rows counted from the top; 0 where nothing was drawn.
+    #[cfg(test)]
     pub fn depth(&self, x: u32, y: u32) -> f32 {
-        assert!(x < self.screen.width && y < self.screen.height, "no pixel ({x}, {y})");
-        let Block { log_width, log_height } = self.block;
-        let (inner_x, inner_y) = (x & ((1 << log_width) - 1), y & ((1 << log_height) - 1));
-        let block = ((x >> log_width) << (log_width + log_height)) + (inner_y << log_width) + inner_x;
-        self.depth[self.start + (y >> log_height) as usize * self.stride() + block as usize]
+        let [width, height] = self.screen.size.map(|size| size as u32);
+        assert!(x < width && y < height, "no pixel ({x}, {y})");
+        self.depth[self.place(x as usize, y as usize)]
     }
 
     /// The farthest depth in each tile of 8x8 pixels, as `generate` found it: tiles across, and row after row.
+    #[cfg(test)]
     pub fn farthest(&self) -> (usize, impl Iterator<Item = &[f32]>) {
         let [columns, rows] = self.tiles();
         (columns, self.farthest.chunks_exact(columns + MOST).take(rows).map(move |row| &row[..columns]))

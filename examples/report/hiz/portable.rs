@@ -1,8 +1,8 @@
-//! Any processor: arrays of four, blocks of 4x1 pixels. The compiler makes of them what it can.
+//! Any processor: arrays of eight, blocks of 8x1 pixels. The compiler makes of them what it can.
 
 use super::lanes::{Lanes, Pass, Words};
 
-const N: usize = 4;
+const N: usize = 8;
 type F = [f32; N];
 type I = [i32; N];
 
@@ -34,7 +34,6 @@ macro_rules! lanewise {
 
 impl Lanes for Portable {
     const N: usize = N;
-    const LOG_WIDTH: u32 = 2;
     const LOG_HEIGHT: u32 = 0;
     type F = F;
     type I = I;
@@ -42,7 +41,7 @@ impl Lanes for Portable {
 
     lanewise! {
         bits_of(x: f32) -> i32 = x.to_bits() as i32;
-        from_bits(x: i32) -> f32 = f32::from_bits(x as u32);
+        float_of(x: i32) -> f32 = f32::from_bits(x as u32);
         add(a: f32, b: f32) -> f32 = a + b;
         sub(a: f32, b: f32) -> f32 = a - b;
         mul(a: f32, b: f32) -> f32 = a * b;
@@ -94,8 +93,8 @@ impl Lanes for Portable {
         (0..N).fold(0, |bits, k| bits | u32::from(m[k]) << k)
     }
     #[inline(always)]
-    fn all_negative(self, a: I) -> bool {
-        a.iter().fold(-1, |all, a| all & a) < 0
+    fn any_negative(self, a: I) -> bool {
+        a.into_iter().fold(0, |any, a| any | a) < 0
     }
     #[inline(always)]
     fn least(self, a: F) -> f32 {

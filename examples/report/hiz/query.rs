@@ -33,15 +33,22 @@ impl Pass for Query<'_> {
         let depth = s.f(self.depth);
         // SAFETY: there are as many numbers as the most lanes.
         let lane = unsafe { s.load_i(COUNT.as_ptr().cast()) };
+        // One decision a row of tiles: over its whole vectors first, then over the tiles that are left.
+        let count = self.last[0] + 1 - self.first[0];
+        let whole = count / L::N * L::N;
+        let left = s.lt_i(lane, s.i((count - whole) as i32));
         for y in self.first[1]..=self.last[1] {
-            for x in (self.first[0]..=self.last[0]).step_by(L::N) {
-                let tiles = &self.farthest[y * self.row + x..][..L::N];
-                // SAFETY: the slice is as long as that.
-                let nearer = s.lt(depth, unsafe { s.load(tiles.as_ptr()) });
-                let beyond = s.lt_i(s.i((self.last[0] - x) as i32), lane);
-                if s.bits(s.or_m(nearer, beyond)) != (1 << L::N) - 1 {
-                    return false;
-                }
+            let tiles = &self.farthest[y * self.row + self.first[0]..][..whole + L::N];
+            let mut least = s.f(f32::INFINITY);
+            for x in (0..whole).step_by(L::N) {
+                // SAFETY: a vector more than these is within the slice.
+                least = s.min(least, unsafe { s.load(tiles.as_ptr().add(x)) });
+            }
+            // SAFETY: this is that vector.
+            let rest = unsafe { s.load(tiles.as_ptr().add(whole)) };
+            least = s.min(least, s.select(left, rest, s.f(f32::INFINITY)));
+            if s.bits(s.lt(depth, least)) != (1 << L::N) - 1 {
+                return false;
             }
         }
         true

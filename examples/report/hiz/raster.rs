@@ -2,18 +2,16 @@
 
 use super::lanes::{COUNT, Lanes, Pass};
 use super::list::TriangleList;
+use super::reduce::TILE;
 use super::screen::Screen;
 use super::setup::Batch;
-
-/// Narrower triangles are walked by the box around them.
-const WIDE: i32 = 4;
 
 /// All triangles of a list into a buffer of blocks.
 pub struct Raster<'a> {
     pub screen: Screen,
     pub list: &'a TriangleList,
     pub depth: &'a mut [f32],
-    /// Floats from one row of blocks to the next.
+    /// Floats from one row of tiles to the next.
     pub stride: usize,
 }
 
@@ -22,17 +20,17 @@ impl Pass for Raster<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, s: L) {
-        // The blocks of the screen's last pixel are there.
-        let (x, y) = ((self.screen.width - 1) >> L::LOG_WIDTH, (self.screen.height - 1) >> L::LOG_HEIGHT);
-        assert!(x as usize * L::N < self.stride && (y as usize + 1) * self.stride <= self.depth.len());
-        assert!((self.depth.as_ptr() as usize).is_multiple_of(4 * L::N) && self.stride.is_multiple_of(L::N));
+        // The tile of the screen's last pixel is there.
+        let [x, y] = self.screen.size.map(|size| (size as usize - 1) / TILE);
+        assert!((x + 1) * TILE * TILE <= self.stride && (y + 1) * self.stride <= self.depth.len());
+        assert!((self.depth.as_ptr() as usize).is_multiple_of(64) && self.stride.is_multiple_of(16));
         let mut batch = Batch::default();
         for at in (0..self.list.len()).step_by(L::N) {
             let mut live = batch.set_up(s, &self.screen, self.list, at);
             while live != 0 {
                 let t = live.trailing_zeros() as usize;
                 live &= live - 1;
-                // SAFETY: its blocks are on the screen, whose last block lies within the buffer.
+                // SAFETY: its blocks are on the screen, whose last tile lies within the buffer.
                 unsafe { fill(s, &batch, t & 15, self.depth.as_mut_ptr(), self.stride) };
             }
         }
@@ -42,74 +40,52 @@ impl Pass for Raster<'_> {
 /// Fills triangle `t` of a batch.
 ///
 /// # Safety
-/// Its blocks lie within the buffer, whose rows of blocks lie `stride` floats apart.
+/// Its tiles lie within the buffer, whose rows of tiles lie `stride` floats apart.
 #[inline(always)]
 unsafe fn fill<L: Lanes>(s: L, batch: &Batch, t: usize, depth: *mut f32, stride: usize) {
     // SAFETY: there are as many numbers as the most lanes.
     let lane = unsafe { s.load_i(COUNT.as_ptr().cast()) };
-    let lane_x = s.and_i(lane, s.i((1 << L::LOG_WIDTH) - 1));
-    let lane_y = s.shr(lane, L::LOG_WIDTH);
+    let lane_x = s.and_i(lane, s.i(7));
+    let lane_y = s.shr(lane, 3);
 
     let within = [lane_x, lane_y];
-    let (mut e0, x0, y0) = edge(s, batch, 0, t, within);
-    let (mut e1, x1, y1) = edge(s, batch, 1, t, within);
-    let (mut e2, x2, y2) = edge(s, batch, 2, t, within);
+    let (e0, x0, y0) = edge(s, batch, 0, t, within);
+    let (e1, x1, y1) = edge(s, batch, 1, t, within);
+    let (e2, x2, y2) = edge(s, batch, 2, t, within);
     let (depth_x, depth_y) = (s.f(batch.depth_x[t]), s.f(batch.depth_y[t]));
     let nearest = s.f(batch.nearest[t]);
-    let mut z = s.mul_add(depth_x, s.to_f(lane_x), s.mul_add(depth_y, s.to_f(lane_y), s.f(batch.depth[t])));
-    let z_x = s.mul(depth_x, s.f((1 << L::LOG_WIDTH) as f32));
+    let z = s.mul_add(depth_x, s.to_f(lane_x), s.mul_add(depth_y, s.to_f(lane_y), s.f(batch.depth[t])));
+    let z_x = s.mul(depth_x, s.f(8.0));
     let z_y = s.mul(depth_y, s.f((1 << L::LOG_HEIGHT) as f32));
 
     let [across, down] = [batch.blocks[0][t], batch.blocks[1][t]];
-    let mut row = depth.wrapping_add(batch.block[1][t] as usize * stride + batch.block[0][t] as usize * L::N);
-    if across < WIDE {
-        for _ in 0..down {
-            let (mut f0, mut f1, mut f2, mut zz) = (e0, e1, e2, z);
-            for x in 0..across as usize {
-                let outside = s.or_i(f0, s.or_i(f1, f2));
-                // SAFETY: a block of the triangle's.
-                unsafe { s.raise(row.wrapping_add(x * L::N), outside, s.min(zz, nearest)) };
-                (f0, f1, f2, zz) = (s.add_i(f0, x0), s.add_i(f1, x1), s.add_i(f2, x2), s.add(zz, z_x));
-            }
-            (e0, e1, e2, z) = (s.add_i(e0, y0), s.add_i(e1, y1), s.add_i(e2, y2), s.add(z, z_y));
-            row = row.wrapping_add(stride);
+    let [left, top] = [batch.block[0][t], batch.block[1][t]].map(|at| at as usize);
+    let column = depth.wrapping_add(left * TILE * TILE);
+    let walk = Walk { edges: [e0, e1, e2], right: [x0, x1, x2], down: [y0, y1, y2], z, z_x, z_y, nearest };
+    // SAFETY: the triangle's blocks.
+    unsafe {
+        match across {
+            1 => return walk.rows::<1>(s, column, stride, top, down),
+            2 => return walk.rows::<2>(s, column, stride, top, down),
+            3 => return walk.rows::<3>(s, column, stride, top, down),
+            4 => return walk.rows::<4>(s, column, stride, top, down),
+            5 => return walk.rows::<5>(s, column, stride, top, down),
+            6 => return walk.rows::<6>(s, column, stride, top, down),
+            7 => return walk.rows::<7>(s, column, stride, top, down),
+            8 => return walk.rows::<8>(s, column, stride, top, down),
+            9 => return walk.rows::<9>(s, column, stride, top, down),
+            10 => return walk.rows::<10>(s, column, stride, top, down),
+            _ => {}
         }
-        return;
     }
 
-    let cross = |k: usize| [batch.cross[k][t], batch.cross_step[k][t], batch.not_left[k][t], batch.not_right[k][t]];
-    let cross = [cross(0), cross(1), cross(2)];
-    for r in 0..down {
-        // Half a hundredth of a block more than rounding can take away.
-        let (mut from, mut to) = (0.0_f32, (across - 1) as f32);
-        for [at, step, not_left, not_right] in cross {
-            let x = at + step * r as f32;
-            let (left, right) = (x + not_left - 0.01, x + not_right + 0.01);
-            from = if left > from { left } else { from };
-            to = if right < to { right } else { to };
-        }
-        if from <= to {
-            // The first block is the one that begins at or before the crossing: of the next, the best pixel is inside.
-            let (first, last) = (from as i32, to as i32);
-            let skip = s.i(first);
-            let (mut f0, mut f1, mut f2) = (
-                s.add_i(e0, s.mul_i(x0, skip)),
-                s.add_i(e1, s.mul_i(x1, skip)),
-                s.add_i(e2, s.mul_i(x2, skip)),
-            );
-            let mut column = s.f(first as f32);
-            for x in first as usize..=last as usize {
-                let outside = s.or_i(f0, s.or_i(f1, f2));
-                let zz = s.min(s.mul_add(column, z_x, z), nearest);
-                // SAFETY: a block of the triangle's: `from` and `to` are within.
-                unsafe { s.raise(row.wrapping_add(x * L::N), outside, zz) };
-                (f0, f1, f2) = (s.add_i(f0, x0), s.add_i(f1, x1), s.add_i(f2, x2));
-                column = s.add(column, s.f(1.0));
-            }
-        }
-        (e0, e1, e2, z) = (s.add_i(e0, y0), s.add_i(e1, y1), s.add_i(e2, y2), s.add(z, z_y));
-        row = row.wrapping_add(stride);
-    }
+    let cross = [
+        [batch.cross[0][t], batch.cross_step[0][t], batch.not_left[0][t], batch.not_right[0][t]],
+        [batch.cross[1][t], batch.cross_step[1][t], batch.not_left[1][t], batch.not_right[1][t]],
+        [batch.cross[2][t], batch.cross_step[2][t], batch.not_left[2][t], batch.not_right[2][t]],
+    ];
+    // SAFETY: the triangle's blocks.
+    unsafe { walk.tiles(s, column, stride, top, [across, down], &cross) }
 }
 
 /// An edge function at the first block's pixels, and its steps from block to block. A function, as closures that are called
@@ -118,5 +94,107 @@ unsafe fn fill<L: Lanes>(s: L, batch: &Batch, t: usize, depth: *mut f32, stride:
 fn edge<L: Lanes>(s: L, batch: &Batch, k: usize, t: usize, [x, y]: [L::I; 2]) -> (L::I, L::I, L::I) {
     let (a, b) = (s.i(batch.edge_x[k][t]), s.i(batch.edge_y[k][t]));
     let at = s.add_i(s.i(batch.edge[k][t]), s.add_i(s.mul_i(a, x), s.mul_i(b, y)));
-    (at, s.shl(a, L::LOG_WIDTH), s.shl(b, L::LOG_HEIGHT))
+    (at, s.shl(a, 3), s.shl(b, L::LOG_HEIGHT))
+}
+
+/// Edge functions and depth in a triangle's first block, and their steps from block to block.
+#[derive(Clone, Copy)]
+struct Walk<L: Lanes> {
+    edges: [L::I; 3],
+    right: [L::I; 3],
+    down: [L::I; 3],
+    z: L::F,
+    z_x: L::F,
+    z_y: L::F,
+    nearest: L::F,
+}
+
+impl<L: Lanes> Walk<L> {
+    /// All of a box that is `ACROSS` blocks wide, row after row of blocks: a loop without a branch that depends on anything
+    /// but the height.
+    ///
+    /// # Safety
+    /// The box lies within the buffer, and its first column at `column`.
+    #[inline(always)]
+    unsafe fn rows<const ACROSS: usize>(self, s: L, column: *mut f32, stride: usize, top: usize, down: i32) {
+        let Self { edges: [mut e0, mut e1, mut e2], right, down: [y0, y1, y2], mut z, z_x, z_y, nearest } = self;
+        for y in top..top + down as usize {
+            let row = column.wrapping_add(y / L::ROWS * stride + y % L::ROWS * L::N);
+            let (mut f0, mut f1, mut f2, mut zz) = (e0, e1, e2, z);
+            for x in 0..ACROSS {
+                let outside = s.or_i(f0, s.or_i(f1, f2));
+                // SAFETY: a block of the box.
+                unsafe { s.raise(row.wrapping_add(x * TILE * TILE), outside, s.min(zz, nearest)) };
+                (f0, f1, f2) = (s.add_i(f0, right[0]), s.add_i(f1, right[1]), s.add_i(f2, right[2]));
+                zz = s.add(zz, z_x);
+            }
+            (e0, e1, e2, z) = (s.add_i(e0, y0), s.add_i(e1, y1), s.add_i(e2, y2), s.add(z, z_y));
+        }
+    }
+
+    /// A wide box, a row of tiles at a time: from the first to the last tile in which an edge leaves anything. How many that
+    /// are cannot be predicted, so that it is asked once a row of tiles and not once a row of blocks.
+    ///
+    /// # Safety
+    /// The box lies within the buffer, and its first column at `column`.
+    #[inline(always)]
+    unsafe fn tiles(
+        self,
+        s: L,
+        column: *mut f32,
+        stride: usize,
+        top: usize,
+        [across, down]: [i32; 2],
+        cross: &[[f32; 4]; 3],
+    ) {
+        let Self { edges: [e0, e1, e2], right, down: [y0, y1, y2], z, z_x, z_y, nearest } = self;
+        let rest = s.i(L::ROWS as i32 - 1);
+        let (l0, l1, l2) = (s.mul_i(y0, rest), s.mul_i(y1, rest), s.mul_i(y2, rest));
+        let mut first_row = -((top % L::ROWS) as i32);
+        let mut tiles = column.wrapping_add(top / L::ROWS * stride);
+        while first_row < down {
+            // A hundredth of a block is more than rounding can take away.
+            let (mut from, mut to) = (0.0_f32, (across - 1) as f32);
+            for [at, step, not_left, not_right] in cross {
+                let x = at + step * first_row as f32;
+                let (left, right) = (x + not_left - 0.01, x + not_right + 0.01);
+                from = if left > from { left } else { from };
+                to = if right < to { right } else { to };
+            }
+            let (first, end) = (from as i32, if from <= to { to as i32 + 1 } else { from as i32 });
+            let (skip, rows, row) = (s.i(first), s.i(first_row), s.f(first_row as f32));
+            let mut f0 = s.add_i(s.add_i(e0, s.mul_i(y0, rows)), s.mul_i(right[0], skip));
+            let mut f1 = s.add_i(s.add_i(e1, s.mul_i(y1, rows)), s.mul_i(right[1], skip));
+            let mut f2 = s.add_i(s.add_i(e2, s.mul_i(y2, rows)), s.mul_i(right[2], skip));
+            let z = s.mul_add(row, z_y, z);
+            let mut column = s.f(first as f32);
+            for x in first as usize..end as usize {
+                let tile = tiles.wrapping_add(x * TILE * TILE);
+                let mut zz = s.mul_add(column, z_x, z);
+                // Inside of all edges in its first and last row: whole tiles need no edge functions. Where a tile is few
+                // vectors, asking costs what it saves.
+                let last = s.or_i(s.add_i(f0, l0), s.or_i(s.add_i(f1, l1), s.add_i(f2, l2)));
+                if L::ROWS < 8 || s.any_negative(s.or_i(last, s.or_i(f0, s.or_i(f1, f2)))) {
+                    let (mut g0, mut g1, mut g2) = (f0, f1, f2);
+                    for r in 0..L::ROWS {
+                        let outside = s.or_i(g0, s.or_i(g1, g2));
+                        // SAFETY: a block of a tile that the box touches.
+                        unsafe { s.raise(tile.wrapping_add(r * L::N), outside, s.min(zz, nearest)) };
+                        (g0, g1, g2, zz) = (s.add_i(g0, y0), s.add_i(g1, y1), s.add_i(g2, y2), s.add(zz, z_y));
+                    }
+                } else {
+                    for r in 0..L::ROWS {
+                        let block = tile.wrapping_add(r * L::N);
+                        // SAFETY: a block of a tile that the box touches.
+                        unsafe { s.store(block, s.max(s.load(block), s.min(zz, nearest))) };
+                        zz = s.add(zz, z_y);
+                    }
+                }
+                (f0, f1, f2) = (s.add_i(f0, right[0]), s.add_i(f1, right[1]), s.add_i(f2, right[2]));
+                column = s.add(column, s.f(1.0));
+            }
+            first_row += L::ROWS as i32;
+            tiles = tiles.wrapping_add(stride);
+        }
+    }
 }

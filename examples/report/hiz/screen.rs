@@ -5,12 +5,12 @@ use super::lanes::Lanes;
 /// The screen of a buffer.
 #[derive(Clone, Copy)]
 pub struct Screen {
-    pub width: u32,
-    pub height: u32,
+    /// In pixels.
     /// Vertices lie on a grid of `1 >> bits` pixel.
     pub bits: u32,
     /// Half the size, in steps of the grid.
     pub half: [f32; 2],
+    pub size: [i32; 2],
     /// How far beyond the screen's edges vertices may lie before a triangle is clipped, in steps of the grid.
     pub guard: f32,
     /// The near plane, in w.
@@ -31,9 +31,8 @@ impl Screen {
         let guard = (256..=4096).step_by(16).take_while(|&guard| fits(guard, bits)).last().unwrap_or(256);
         let unit = (1 << bits) as f32;
         Self {
-            width,
-            height,
             bits,
+            size: [width as i32, height as i32],
             half: [width as f32 * 0.5 * unit, height as f32 * 0.5 * unit],
             guard: guard as f32 * unit,
             near: 0.0,
@@ -65,9 +64,9 @@ impl Screen {
 /// The first and last of `size` pixels whose centres are between the least and the greatest of three coordinates; the last
 /// is before the first where there is none. A function, as closures that are called twice are not inlined.
 #[inline(always)]
-pub fn pixels<L: Lanes>(s: L, bits: u32, [a, b, c]: [L::I; 3], size: u32) -> (L::I, L::I) {
+pub fn pixels<L: Lanes>(s: L, bits: u32, [a, b, c]: [L::I; 3], size: i32) -> (L::I, L::I) {
     let half = (1 << bits) / 2;
     let low = s.add_i(s.min_i(a, s.min_i(b, c)), s.i(half - 1));
     let high = s.sub_i(s.max_i(a, s.max_i(b, c)), s.i(half));
-    (s.max_i(s.shr(low, bits), s.i(0)), s.min_i(s.shr(high, bits), s.i(size as i32 - 1)))
+    (s.max_i(s.shr(low, bits), s.i(0)), s.min_i(s.shr(high, bits), s.i(size - 1)))
 }

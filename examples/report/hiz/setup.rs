@@ -27,7 +27,7 @@ pub struct Batch {
     /// Where, in blocks from the first, a row of blocks enters or leaves an edge, and what to add for the next row.
     pub cross: [[f32; MOST]; 3],
     pub cross_step: [[f32; MOST]; 3],
-    /// What makes a crossing nothing that bounds from the left, or from the right.
+    /// From the first row's crossing to where a row of tiles begins or ends, or so far off that nothing is bounded.
     pub not_left: [[f32; MOST]; 3],
     pub not_right: [[f32; MOST]; 3],
 }
@@ -42,10 +42,10 @@ impl Batch {
         let half = s.i((1 << bits) / 2);
 
         // From the first to the last pixel whose centre the box around a triangle holds.
-        let (left, right) = pixels(s, bits, [x0, x1, x2], screen.width);
-        let (top, bottom) = pixels(s, bits, [y0, y1, y2], screen.height);
-        let (left, top) = (s.shr(left, L::LOG_WIDTH), s.shr(top, L::LOG_HEIGHT));
-        let across = s.add_i(s.sub_i(s.shr(right, L::LOG_WIDTH), left), s.i(1));
+        let (left, right) = pixels(s, bits, [x0, x1, x2], screen.size[0]);
+        let (top, bottom) = pixels(s, bits, [y0, y1, y2], screen.size[1]);
+        let (left, top) = (s.shr(left, 3), s.shr(top, L::LOG_HEIGHT));
+        let across = s.add_i(s.sub_i(s.shr(right, 3), left), s.i(1));
         let down = s.add_i(s.sub_i(s.shr(bottom, L::LOG_HEIGHT), top), s.i(1));
         put_i(s, &mut self.block[0], left);
         put_i(s, &mut self.block[1], top);
@@ -53,7 +53,7 @@ impl Batch {
         put_i(s, &mut self.blocks[1], down);
 
         // The centre of the first block's first pixel, on the grid.
-        let px = s.add_i(s.shl(left, L::LOG_WIDTH + bits), half);
+        let px = s.add_i(s.shl(left, 3 + bits), half);
         let py = s.add_i(s.shl(top, L::LOG_HEIGHT + bits), half);
         for (k, [(xa, ya), (xb, yb)]) in
             [[(x0, y0), (x1, y1)], [(x1, y1), (x2, y2)], [(x2, y2), (x0, y0)]].into_iter().enumerate()
@@ -74,7 +74,7 @@ impl Batch {
             put_i(s, &mut self.edge_y[k], b);
 
             // A block is worth looking at where its best pixel is inside: where edge + best + a * width * x >= 0.
-            let (width, height) = (1 << L::LOG_WIDTH, 1 << L::LOG_HEIGHT);
+            let (width, height) = (8, 1 << L::LOG_HEIGHT);
             let best_x = s.mul_i(s.max_i(a, s.i(0)), s.i(width - 1));
             let best_y = s.mul_i(s.max_i(b, s.i(0)), s.i(height - 1));
             let best = s.to_f(s.add_i(edge, s.add_i(best_x, best_y)));
@@ -82,9 +82,13 @@ impl Batch {
             let flat = s.and_m(s.le(a, s.f(0.0)), s.le(s.f(0.0), a));
             let inverse = s.div(s.f(-1.0 / width as f32), s.select(flat, s.f(1.0), a));
             put(s, &mut self.cross[k], s.mul(best, inverse));
-            put(s, &mut self.cross_step[k], s.mul(s.mul(b, s.f(height as f32)), inverse));
-            put(s, &mut self.not_left[k], s.select(s.lt(s.f(0.0), a), s.f(0.0), s.f(-FAR)));
-            put(s, &mut self.not_right[k], s.select(s.lt(a, s.f(0.0)), s.f(0.0), s.f(FAR)));
+            let step = s.mul(s.mul(b, s.f(height as f32)), inverse);
+            put(s, &mut self.cross_step[k], step);
+            // A row of tiles is crossed from the first row's crossing to the last one's.
+            let rest = s.mul(step, s.f((L::ROWS - 1) as f32));
+            let (least, most) = (s.min(rest, s.f(0.0)), s.max(rest, s.f(0.0)));
+            put(s, &mut self.not_left[k], s.select(s.lt(s.f(0.0), a), least, s.f(-FAR)));
+            put(s, &mut self.not_right[k], s.select(s.lt(a, s.f(0.0)), most, s.f(FAR)));
         }
 
         // The plane through the vertices.

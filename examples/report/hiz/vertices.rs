@@ -50,7 +50,7 @@ impl Pass for Project<'_> {
 unsafe fn project<L: Lanes>(s: L, screen: &Screen, from: *const Words, to: *mut Words) {
     // SAFETY: the caller vouches for them; they lie side by side.
     let [x, y, _, w] = unsafe { s.fetch::<1>(from, COUNT.as_ptr()) };
-    let (x, y, w) = (s.from_bits(x), s.from_bits(y), s.from_bits(w));
+    let (x, y, w) = (s.float_of(x), s.float_of(y), s.float_of(w));
     let depth = s.div(s.f(1.0), w);
     // Not fused: `Screen::project` rounds alike.
     let [half_width, half_height] = screen.half;
