@@ -24,11 +24,8 @@ pub struct Tally {
     pub differences: u64,
     pub differing: u64,
     /// The first of them, in words.
-    pub examples: Vec<String>,
+    pub example: Option<String>,
 }
-
-/// How many differing triangles of a kind are told.
-const EXAMPLES: usize = 3;
 
 /// Compares `count` triangles of the kinds in turn, and adds to the tally of each.
 pub fn compare(
@@ -44,7 +41,7 @@ pub fn compare(
     let mut left = count;
     while left > 0 {
         let size = left.min(BATCH as u64);
-        let batch: Vec<(usize, Triangle)> = (0..size).map(|_| source.next()).collect::<Result<_, _>>()?;
+        let batch: Vec<(usize, Triangle)> = (0..size).map(|_| source.make_next()).collect::<Result<_, _>>()?;
         let triangles: Vec<Triangle> = batch.iter().map(|b| b.1).collect();
         // Corners that are left over stay in one point, and cover nothing.
         let mut vertices: Vertices = [[0.0, 0.0, 0.0, 1.0]; 3 * BATCH];
@@ -63,9 +60,7 @@ pub fn compare(
             if let Some(first) = differing[i].first {
                 tally.differences += differing[i].pixels;
                 tally.differing += 1;
-                if tally.examples.len() < EXAMPLES {
-                    tally.examples.push(tell(t, view, first, differing[i].ours));
-                }
+                tally.example.get_or_insert_with(|| tell(t, view, first, differing[i].ours));
             }
         }
         left -= size;

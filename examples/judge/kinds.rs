@@ -91,7 +91,7 @@ impl Triangles {
     }
 
     /// The next triangle and its kind's place among the kinds.
-    pub fn next(&mut self) -> Result<(usize, Triangle), String> {
+    pub fn make_next(&mut self) -> Result<(usize, Triangle), String> {
         let index = self.next;
         self.next = (index + 1) % self.sources.len();
         let (kind, source, waiting) = &mut self.sources[index];

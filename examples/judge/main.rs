@@ -111,12 +111,11 @@ fn print(kinds: &[Kind], tallies: &[Tally]) -> u64 {
         all.covered += tally.covered;
         all.ties += tally.ties;
         all.differences += tally.differences;
-        all.differing += tally.differing;
     }
     line("all", &all);
     for (kind, tally) in kinds.iter().zip(tallies) {
-        for example in &tally.examples {
-            println!("{}, {} triangles differ: {example}", kind.name(), tally.differing);
+        if let Some(example) = &tally.example {
+            println!("{}: {} triangles differ, the first: {example}", kind.name(), tally.differing);
         }
     }
     all.differences
