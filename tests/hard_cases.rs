@@ -10,11 +10,14 @@ mod cases {
     use std::sync::OnceLock;
 
     mod coplanar;
+    mod grid;
     mod ground;
     mod junctions;
+    mod layers;
     pub mod measured;
     mod neighbours;
     mod range;
+    mod scale;
     mod slivers;
     mod subject;
     mod table;
@@ -40,6 +43,6 @@ mod cases {
 
     /// All cases, in the order of the table.
     pub fn all() -> impl Iterator<Item = &'static Case> {
-        [slivers::CASES, ground::CASES, coplanar::CASES, junctions::CASES, neighbours::CASES, range::CASES].into_iter().flatten().copied()
+        [slivers::CASES, ground::CASES, coplanar::CASES, junctions::CASES, neighbours::CASES, range::CASES, scale::CASES, grid::CASES, layers::CASES].into_iter().flatten().copied()
     }
 }

@@ -16,9 +16,9 @@ pub const CASES: &[&Case] = &[&AROUND, &CUT];
 static AROUND: Case = Case::new("mesh around the eye, clipped beside unclipped", || spheres(&[0.0, 1e-3, 0.02]));
 static CUT: Case = Case::new("mesh around the eye, near plane through it", || spheres(&[0.5, 0.9, 1.3]));
 
-const SIZE: (usize, usize) = (128, 64);
+const SIZE: (usize, usize) = (64, 32);
 /// Cells along a cube's edge.
-const CELLS: i32 = 6;
+const CELLS: i32 = 8;
 /// What is within this of the near plane's trace may be covered or not, in pixels; elsewhere it is certain.
 const BORDER: f64 = 1.0 / 64.0;
 
