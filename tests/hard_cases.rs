@@ -43,6 +43,19 @@ mod cases {
 
     /// All cases, in the order of the table.
     pub fn all() -> impl Iterator<Item = &'static Case> {
-        [slivers::CASES, ground::CASES, coplanar::CASES, junctions::CASES, neighbours::CASES, range::CASES, scale::CASES, grid::CASES, layers::CASES].into_iter().flatten().copied()
+        [
+            slivers::CASES,
+            ground::CASES,
+            coplanar::CASES,
+            junctions::CASES,
+            neighbours::CASES,
+            range::CASES,
+            scale::CASES,
+            grid::CASES,
+            layers::CASES,
+        ]
+        .into_iter()
+        .flatten()
+        .copied()
     }
 }

@@ -103,9 +103,7 @@ fn junctions(off: i64) -> Measured {
                 }
             }
         }
-        let differ = times.iter().zip(&exact).filter(|(a, b)| a != b).count();
-        // Such a pixel's centre lies on the seam, as nearly as can be told.
-        (0..differ).for_each(|_| measured.wrong(0.0));
+        measured.cracks += times.iter().zip(&exact).filter(|(a, b)| a != b).count() as u64;
     }
     measured
 }
@@ -113,11 +111,11 @@ fn junctions(off: i64) -> Measured {
 /// Corners on the grid and exactly on the longer edge: every pixel on the seam is covered once.
 #[test]
 fn t_junctions_on_the_line_are_tight() {
-    ON.measured().assert_exact();
+    ON.measured().assert_exact().assert_behind(4e-4, 0.0);
 }
 
 /// A corner that snapping moved by one unit opens a gap: the pixels in it are those of the exact triangles.
 #[test]
 fn t_junctions_off_the_line_gape_as_exact_triangles_do() {
-    OFF.measured().assert_exact();
+    OFF.measured().assert_exact().assert_behind(4e-4, 0.0);
 }

@@ -122,20 +122,17 @@ fn pixels(measured: &mut Measured, subject: &Subject, oracle: &Oracle) {
 /// The default rule.
 #[test]
 fn ten_thousand_layers_with_three_layers() {
-    let m = THREE_LAYER.measured();
-    m.assert_exact();
+    THREE_LAYER.measured().assert_exact().assert_behind(0.02, 5e-5);
 }
 
 /// The rule of HPG 2016.
 #[test]
 fn ten_thousand_layers_with_the_quick_rule() {
-    let m = QUICK.measured();
-    m.assert_exact();
+    QUICK.measured().assert_exact().assert_behind(0.84, 0.02);
 }
 
 /// The rule of 2015.
 #[test]
 fn ten_thousand_layers_with_the_accurate_rule() {
-    let m = ACCURATE.measured();
-    m.assert_exact();
+    ACCURATE.measured().assert_exact().assert_behind(0.5, 5e-4);
 }

@@ -200,16 +200,37 @@ impl Measured {
         self.hidden += other.hidden;
     }
 
-    /// No pixel is covered wrongly, none too near, and nothing is called hidden that shows.
-    pub fn assert_exact(&self) {
-        assert_eq!(self.wrong, 0, "pixels covered wrongly: {self:?}");
-        self.assert_safe();
+    /// No pixel is covered wrongly, none is too near, and nothing is called hidden that shows.
+    pub fn assert_exact(&self) -> &Self {
+        assert_eq!((self.wrong, self.cracks), (0, 0), "pixels covered wrongly: {self:?}");
+        self.assert_safe()
+    }
+
+    /// The same of what is clipped: a new corner is snapped, and pixels may be wrong whose centres lie within half a unit of
+    /// the grid, across, of the exact line. Here the unit's whole is allowed, for corners far out are snapped more coarsely.
+    pub fn assert_clipped(&self) -> &Self {
+        assert!(self.off <= 1.0 / 256.0, "{} pixels off: {self:?}", self.off);
+        assert_eq!(self.cracks, 0, "cracks: {self:?}");
+        self.assert_safe()
     }
 
     /// No pixel is too near, and nothing is called hidden that shows; and something was compared.
-    pub fn assert_safe(&self) {
+    pub fn assert_safe(&self) -> &Self {
         assert!(self.depths > 500, "{self:?}");
         assert!(self.nearer <= 0.0, "stored too near: {self:?}");
         assert_eq!(self.hidden, 0, "called hidden, but it shows: {self:?}");
+        self
+    }
+
+    /// No pixel is farther behind its bound than a part of it, and no more than a share of them by over a hundredth.
+    pub fn assert_behind(&self, part: f64, share: f64) -> &Self {
+        assert!(self.part <= part, "{} behind: {self:?}", self.part);
+        assert!(self.behind_share() <= share, "{} are behind: {self:?}", self.behind_share());
+        self
+    }
+
+    /// The share of covered pixels that are more than a hundredth behind, or given up.
+    pub fn behind_share(&self) -> f64 {
+        (self.far_behind + self.forgotten) as f64 / (self.depths + self.forgotten).max(1) as f64
     }
 }

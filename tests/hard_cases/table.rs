@@ -64,7 +64,7 @@ fn row(case: &Case, m: &Measured) -> String {
         ulps(m.nearer),
         ulps(m.behind),
         percent(m.part),
-        percent((m.far_behind + m.forgotten) as f64 / (m.depths + m.forgotten).max(1) as f64),
+        percent(m.behind_share()),
         count(m.forgotten),
         if m.asked == 0 { "none asked".into() } else { format!("{} of {}", count(m.hidden), count(m.asked)) },
     ];
@@ -89,7 +89,8 @@ fn the_committed_table_is_current() {
     let (committed, after) = rest.split_once(END).expect("a line where they end");
     let measured = table();
     if std::env::var_os("UPDATE_ACCURACY").is_some_and(|v| v == "1") {
-        std::fs::write(&path, format!("{before}{BEGIN}{measured}{END}{after}")).expect("docs/accuracy.md can be written");
+        std::fs::write(&path, format!("{before}{BEGIN}{measured}{END}{after}"))
+            .expect("docs/accuracy.md can be written");
         return;
     }
     let differs = committed.lines().zip(measured.lines()).find(|(a, b)| a != b);
