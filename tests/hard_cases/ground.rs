@@ -10,11 +10,13 @@ use crate::oracle::homogeneous::Homogeneous;
 use crate::oracle::snap::snapped;
 use crate::oracle::{Oracle, Triangle, UNIT, Vertex};
 
-pub const CASES: &[&Case] = &[&QUADS, &ROWS, &CLIPPED];
+pub const CASES: &[&Case] = &[&QUADS, &ROWS, &CLIPPED, &USUAL, &NONE];
 
 static QUADS: Case = Case::new("ground plane from 1e-3 to 1e5, two triangles", quads);
 static ROWS: Case = Case::new("ground plane from 1e-3 to 1e5, 50 rows of tiles", rows);
-static CLIPPED: Case = Case::new("ground plane from behind the eye to 1e5, near plane 1e-3", clipped);
+static CLIPPED: Case = Case::new("ground plane from behind the eye to 1e5, near plane 1e-3", || clipped(NEAREST));
+static USUAL: Case = Case::new("ground plane from behind the eye to 1e5, near plane 0.1", || clipped(0.1));
+static NONE: Case = Case::new("ground plane from behind the eye to 1e5, no near plane", || clipped(0.0));
 
 const SIZE: (usize, usize) = (1024, 1024);
 /// For triangles that are clipped, which take longer to compare.
@@ -114,9 +116,9 @@ fn rows() -> Measured {
     measured
 }
 
-fn clipped() -> Measured {
+fn clipped(near: f32) -> Measured {
     let mut subject = Subject::new(SMALL, YAxis::Down);
-    subject.set_near(NEAREST);
+    subject.set_near(near);
     let mut measured = Measured::default();
     for height in HEIGHTS {
         let far = FARTHEST;
@@ -127,9 +129,10 @@ fn clipped() -> Measured {
         ];
         for t in ground {
             let corners = t.map(|[x, y, _, w]| [x, y, w].map(f64::from));
-            let exact = Homogeneous::new(&corners, f64::from(NEAREST), SMALL, false).expect("not edge-on");
-            subject.clear();
-            subject.draw_clip(&t);
+            let exact = Homogeneous::new(&corners, f64::from(near), SMALL, false).expect("not edge-on");
+            if !measured.taken(&mut subject, &t) {
+                continue;
+            }
             measured.clipped(&exact, 1.0 / f64::from(far), subject.depth(), SMALL.0);
             measured.shown(subject.test_clip(&t));
         }
@@ -152,5 +155,24 @@ fn a_ground_plane_of_rows() {
 /// The plane goes on under the eye and behind it, as it does in games.
 #[test]
 fn a_ground_plane_from_behind_the_eye() {
-    CLIPPED.measured().assert_clipped().assert_behind(0.13, 0.16);
+    let m = CLIPPED.measured();
+    m.assert_clipped().assert_behind(0.13, 0.16);
+    assert_eq!(m.refused, 0);
+}
+
+/// With the near plane of a usual camera.
+#[test]
+fn a_ground_plane_from_behind_the_eye_and_a_usual_near_plane() {
+    let m = USUAL.measured();
+    m.assert_clipped().assert_behind(0.13, 0.12);
+    assert_eq!(m.refused, 0);
+}
+
+/// As an object is before a near plane is set: only the guard band cuts the ground, at w = height / 1984. From a tenth of a
+/// unit above it that is too near for triangles as large as 1e5, and they are refused.
+#[test]
+fn a_ground_plane_from_behind_the_eye_without_near_plane() {
+    let m = NONE.measured();
+    m.assert_clipped().assert_behind(0.13, 0.35);
+    assert_eq!(m.refused, 9);
 }

@@ -2,6 +2,7 @@
 
 use masked_occlusion_culling::CullingResult;
 
+use crate::cases::subject::Subject;
 use crate::oracle::bounds::{block_bound, inside_by, ulp};
 use crate::oracle::homogeneous::Homogeneous;
 use crate::oracle::{Oracle, Triangle, depth_at_pixel, span};
@@ -31,6 +32,8 @@ pub struct Measured {
     pub part: f64,
     /// Pixels stored more than a hundredth behind the bound.
     pub far_behind: u64,
+    /// Triangles that were refused, and of which nothing was drawn.
+    pub refused: u64,
     /// Pixels where neighbours leave a crack, or overlap.
     pub cracks: u64,
     /// Pixels that are covered, and of which the buffer no longer knows.
@@ -53,6 +56,7 @@ impl Default for Measured {
             behind: f64::NEG_INFINITY,
             part: f64::NEG_INFINITY,
             far_behind: 0,
+            refused: 0,
             cracks: 0,
             forgotten: 0,
             asked: 0,
@@ -162,6 +166,20 @@ impl Measured {
         }
     }
 
+    /// A triangle that is drawn alone. False: it was refused, and nothing was drawn.
+    pub fn taken(&mut self, subject: &mut Subject, t: &[[f32; 4]; 3]) -> bool {
+        let before = subject.dropped();
+        subject.clear();
+        subject.draw_clip(t);
+        let refused = subject.dropped() > before;
+        if refused {
+            self.triangles += 1;
+            self.refused += 1;
+            assert!(subject.depth().iter().all(|d| is_empty(*d)), "{t:?} is refused, and drawn");
+        }
+        !refused
+    }
+
     /// A buffer that holds one triangle that is clipped, given by what a pixel's ray meets. `farthest`: 1/w of its farthest
     /// vertex.
     pub fn clipped(&mut self, exact: &Homogeneous, farthest: f64, depth: &[f32], width: usize) {
@@ -194,6 +212,7 @@ impl Measured {
         self.behind = self.behind.max(other.behind);
         self.part = self.part.max(other.part);
         self.far_behind += other.far_behind;
+        self.refused += other.refused;
         self.cracks += other.cracks;
         self.forgotten += other.forgotten;
         self.asked += other.asked;

@@ -66,6 +66,7 @@ fn row(case: &Case, m: &Measured) -> String {
         percent(m.part),
         percent(m.behind_share()),
         count(m.forgotten),
+        count(m.refused),
         if m.asked == 0 { "none asked".into() } else { format!("{} of {}", count(m.hidden), count(m.asked)) },
     ];
     format!("| {} |\n", cells.join(" | "))
@@ -74,7 +75,7 @@ fn row(case: &Case, m: &Measured) -> String {
 fn table() -> String {
     let mut out = String::from(
         "| case | triangles | pixels | covered | wrong | off, pixels | nearest, ulp | behind, ulp | behind, % | over 1% behind, % \
-         | given up | falsely hidden |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+         | given up | refused | falsely hidden |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     all().for_each(|case| write!(out, "{}", row(case, case.measured())).expect("a string"));
     out
