@@ -81,14 +81,31 @@ fn reaching(random: &mut fastrand::Rng, far: i64) -> Triangle {
     [0, 1, 2].map(|k| Vertex { x: corners[k].0, y: corners[k].1, z: z[k] })
 }
 
+/// A triangle as wide as the guard band, of which an edge runs exactly through a pixel's centre on the screen: a tie, which
+/// the last bit of the edge's slope would decide were it rounded.
+fn through_a_centre(random: &mut fastrand::Rng) -> Triangle {
+    let centre = |n: i64| n * UNIT + UNIT / 2;
+    let (x, y) = (centre(random.i64(0..256)), centre(random.i64(0..64)));
+    let most = (DRAWN_BAND - (1 << 17)) / 32;
+    let (a, b) = (random.i64(-most..=most), random.i64(-most..=most));
+    let back = 4 * random.i64(1..=8);
+    let side = random.i64(0..2) * 2 - 1;
+    [
+        Vertex { x: x + 32 * a, y: y + 32 * b, z: 1.0 },
+        Vertex { x: x - back * a, y: y - back * b, z: 0.5 },
+        Vertex { x: x - side * 4 * b, y: y + side * 4 * a, z: 0.25 },
+    ]
+}
+
 /// Triangles with corners `beyond` the band: still not clipped where that is nothing.
 fn guard_band(beyond: i64, exact: bool) -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     let oracle = Oracle::new(SIZE.0, SIZE.1);
     let mut measured = Measured::default();
     let mut random = fastrand::Rng::with_seed(32);
-    for _ in 0..1500 {
-        let t = reaching(&mut random, DRAWN_BAND + beyond);
+    for k in 0..1500 {
+        let tie = exact && k % 2 == 0;
+        let t = if tie { through_a_centre(&mut random) } else { reaching(&mut random, DRAWN_BAND + beyond) };
         if area(&t) == 0 || !(0..SIZE.1).any(|row| !span(&t, row, SIZE.0).is_empty()) {
             continue;
         }
@@ -153,10 +170,11 @@ fn vertices_beside_corners_of_tiles_and_the_screen() {
     BESIDE.measured().assert_exact().assert_behind(1e-3, 0.0);
 }
 
-/// As far out as a vertex may lie and not be clipped: 253,952 pixels, where products do not fit in doubles.
+/// As far out as a vertex may lie and not be clipped: 253,952 pixels, where products do not fit in doubles. Half of the
+/// triangles have an edge that ties with a pixel's centre.
 #[test]
 fn vertices_on_the_guard_band() {
-    BAND.measured().assert_exact().assert_behind(0.81, 0.16);
+    BAND.measured().assert_exact().assert_behind(0.85, 0.16);
 }
 
 /// And the next that is.
