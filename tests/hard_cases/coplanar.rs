@@ -8,11 +8,14 @@ use crate::cases::measured::Measured;
 use crate::cases::subject::Subject;
 use crate::oracle::snap::snapped;
 use crate::oracle::{Oracle, Triangle, UNIT, Vertex};
+use crate::support::wall;
 
-pub const CASES: &[&Case] = &[&ONE_PLANE, &SHEETS];
+pub const CASES: &[&Case] = &[&ONE_PLANE, &SHEETS, &BESIDE];
 
 static ONE_PLANE: Case = Case::new("a million triangles in one slanted plane", one_plane);
 static SHEETS: Case = Case::new("100 sheets of 10,000 triangles, a unit in the last place apart", sheets);
+
+static BESIDE: Case = Case::new("queries that touch a wall, all but parallel to it", beside_a_wall);
 
 /// A grid of vertices over the whole screen, two triangles a cell.
 struct Grid {
@@ -121,6 +124,42 @@ fn sheets() -> Measured {
     measured
 }
 
+/// Large triangles that lean by some units in the last place, each before a wall as near as its nearest pixel, or one step of
+/// f32 farther: it shows there by an ulp at most, and half a pixel of its plane is far less.
+fn beside_a_wall() -> Measured {
+    let size = (256, 128);
+    let mut subject = Subject::new(size, YAxis::Down);
+    let mut oracle = Oracle::new(size.0, size.1);
+    let mut measured = Measured::default();
+    let mut random = fastrand::Rng::with_seed(4);
+    for k in 0..1200 {
+        let lean = [1, 4, 20, 200][k % 4];
+        let base = (1.0 + random.f32()).to_bits();
+        let corners = [(); 3].map(|()| {
+            let (x, y) = (random.i32(-40..=300) as f32 / 128.0 - 1.0, random.i32(-40..=170) as f32 / 64.0 - 1.0);
+            let w = f32::from_bits(base + random.u32(0..=lean));
+            [x * w, y * w, 0.0, w]
+        });
+        let t = corners.map(|v| snapped(v, size, false).expect("a vertex on the grid"));
+        oracle.clear();
+        oracle.draw(&t);
+        let nearest = oracle.depth.iter().fold(-1.0, |m: f64, d| m.max(*d));
+        if nearest < 0.0 {
+            continue;
+        }
+        let mut w = (1.0 / nearest) as f32;
+        while 1.0 / f64::from(w) > nearest {
+            w = w.next_up();
+        }
+        subject.clear();
+        subject.draw_clip(&wall(w));
+        measured.triangles += 1;
+        measured.depth(subject.depth()[0], 1.0 / f64::from(w));
+        measured.shown(subject.test_clip(&corners));
+    }
+    measured
+}
+
 /// Half a pixel a triangle, all in one plane but for the rounding of w.
 #[test]
 fn a_million_coplanar_triangles() {
@@ -131,4 +170,12 @@ fn a_million_coplanar_triangles() {
 #[test]
 fn a_million_nearly_coplanar_triangles() {
     SHEETS.measured().assert_exact().assert_behind(0.02, 0.012);
+}
+
+/// The margin of a query is all that keeps what shows by less than the rounding of its plane.
+#[test]
+fn queries_that_touch_a_wall() {
+    let m = BESIDE.measured();
+    m.assert_safe();
+    assert!(m.asked > 900, "{m:?}");
 }
