@@ -172,7 +172,8 @@ fn a_million_nearly_coplanar_triangles() {
     SHEETS.measured().assert_exact().assert_behind(0.02, 0.012);
 }
 
-/// The margin of a query is all that keeps what shows by less than the rounding of its plane.
+/// A decal on a wall: which of the two is nearer is a matter of how each of them was rounded, and both have to err to the
+/// safe side.
 #[test]
 fn queries_that_touch_a_wall() {
     let m = BESIDE.measured();
