@@ -82,4 +82,37 @@ impl Homogeneous {
         }
         place
     }
+
+    /// How far, in pixels, a pixel's centre lies on the side of a line on which `value` is positive.
+    fn distance(value: f64, [_, dx, dy]: [f64; 3]) -> f64 {
+        let slope = (dx * dx + dy * dy).sqrt();
+        if slope > 0.0 { value / slope } else { f64::INFINITY.copysign(value) }
+    }
+
+    /// How far, in pixels, a pixel's centre lies inside of the nearest of the three edges' lines. Negative: outside, by the
+    /// farthest of the lines that it is outside of.
+    pub fn within_edges_by(&self, column: usize, row: usize) -> f64 {
+        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+        (0..3).fold(f64::INFINITY, |least, k| least.min(Self::distance(self.value(k, x, y), self.terms[k])))
+    }
+
+    /// How far, in pixels, a pixel's centre lies from the near plane's trace, on the side that is seen.
+    pub fn beyond_near_by(&self, column: usize, row: usize) -> f64 {
+        if self.near <= 0.0 {
+            return f64::INFINITY;
+        }
+        Self::distance(1.0 / self.near - self.depth(column, row), self.terms[3])
+    }
+
+    /// The lesser of the two.
+    pub fn inside_by(&self, column: usize, row: usize) -> f64 {
+        self.within_edges_by(column, row).min(self.beyond_near_by(column, row))
+    }
+
+    /// The least 1/w of the plane over the block of 8x4 pixels that holds a pixel.
+    pub fn block_depth(&self, column: usize, row: usize) -> f64 {
+        let (x, y) = ((column / 8 * 8) as f64, (row / 4 * 4) as f64);
+        let corners = [(x, y), (x + 8.0, y), (x, y + 4.0), (x + 8.0, y + 4.0)];
+        corners.iter().fold(f64::MAX, |m, &(x, y)| m.min(self.value(3, x, y)))
+    }
 }

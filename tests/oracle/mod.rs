@@ -6,7 +6,9 @@
 //! whose centre is on or right of the left edge to the one strictly left of the right edge.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
+pub mod bounds;
 pub mod homogeneous;
+pub mod snap;
 
 /// Subpixel units to a pixel.
 pub const UNIT: i64 = 256;
