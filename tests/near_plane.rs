@@ -107,6 +107,43 @@ fn floors_under_the_eye() {
     run(1000, 3, &floor, true);
 }
 
+/// What is far nearer than all that is on the screen, a floor's corners on the near plane, leaves the depths there as good
+/// as those of a floor that ends before the eye.
+#[test]
+fn depths_of_floors_under_the_eye() {
+    let floor = (0.5..2.0f32, 10.0..500.0f32, 0.001..0.1f32)
+        .prop_map(|(height, far, near)| ([[-far, -height, -far], [far, -height, -far], [0.0, -height, far]], near));
+    let state = RefCell::new((objects(SIZE), Vec::new()));
+    check(500, 7, &floor, |(v, near)| {
+        let (objects, depth) = &mut *state.borrow_mut();
+        for moc in objects {
+            let up = moc.y_axis() == YAxis::Up;
+            let Some(exact) = Homogeneous::new(&v.map(|c| c.map(f64::from)), f64::from(near), SIZE, up) else {
+                continue;
+            };
+            moc.set_near_clip_plane(near).unwrap();
+            moc.clear_buffer().unwrap();
+            draw_clip(moc, &v.map(|[x, y, w]| [x, y, 0.0, w]));
+            read(moc, depth);
+            for (i, &stored) in depth.iter().enumerate() {
+                let (column, row) = (i % SIZE.0, i / SIZE.0);
+                if exact.place(column, row, TOLERANCE) != Place::Inside {
+                    continue;
+                }
+                // Snapping moves the plane by half a subpixel.
+                let least = exact.least_around(column, row) - exact.slope() / 256.0;
+                if f64::from(stored) < least * (1.0 - 1e-4) {
+                    let name = name(moc);
+                    return Err(format!(
+                        "{name}, near {near:e}: ({column}, {row}) is too far: {stored:e}, not {least:e}"
+                    ));
+                }
+            }
+        }
+        Ok(())
+    });
+}
+
 /// Corners up to a million pixels away: no guard band holds them, so the sides are clipped too.
 #[test]
 fn beyond_the_guard_band() {

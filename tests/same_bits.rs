@@ -80,33 +80,33 @@ const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, Updat
 const GOLDEN: [[[u64; 3]; 3]; 5] = [
     [
         // town
-        [0x7463_6428_9dc8_c0e0, 0x253b_5a3b_36a8_3605, 0x9b07_7a90_3120_9e6e],
-        [0xd65e_7e53_163f_2d4e, 0xd210_28c4_2893_4425, 0xf9ed_89f7_26b7_4477],
-        [0x279a_aa31_6cfd_57e6, 0xe123_71fc_949c_ce85, 0x7e40_c61e_c70f_07c1],
+        [0x8939_81e6_81ac_4976, 0x253b_5a3b_36a8_3605, 0x5fb4_172d_1258_f2db],
+        [0x51d9_9be4_2588_d24d, 0xd210_28c4_2893_4425, 0x11ad_2b3d_34b1_d303],
+        [0xfe9a_1eba_91cd_9076, 0xe123_71fc_949c_ce85, 0x002c_b49c_5ca8_0719],
     ],
     [
         // terrain
-        [0x6c45_7132_f7bb_684e, 0x0da0_3ec1_9baf_17e5, 0x25e4_6355_ad4e_b987],
-        [0x39fb_a771_e40d_7440, 0x93c1_4b5a_0ae4_57e4, 0x2e3a_d36b_3c45_e41c],
-        [0x2157_b66f_b031_f28c, 0xc941_995d_11ff_0d45, 0x63ba_1eab_a86e_d509],
+        [0xe9d0_9aae_9cd3_3332, 0x0da0_3ec1_9baf_17e5, 0x25e4_6355_ad4e_b987],
+        [0xb796_a9ba_bb13_2860, 0x93c1_4b5a_0ae4_57e4, 0x2e3a_d36b_3c45_e41c],
+        [0xb19c_d6e8_bb1d_147a, 0xc941_995d_11ff_0d45, 0x63ba_1eab_a86e_d509],
     ],
     [
         // blocks
-        [0x0c8d_a2a7_0155_16f5, 0x9661_0878_3e74_21a5, 0xeeb1_6f7c_44d8_2750],
-        [0xd066_4e75_5e25_ad6c, 0x1602_cffc_ed45_d625, 0x8fd8_93e1_d38f_71b1],
-        [0xfe30_c394_7539_2eb2, 0x9661_0878_3e74_21a5, 0xb02d_dd70_f3fc_187f],
+        [0x04b1_d8cb_ea1b_fc10, 0x9661_0878_3e74_21a5, 0xae18_4024_f414_f7c8],
+        [0x2e68_32af_21ad_e59d, 0x1602_cffc_ed45_d625, 0xff28_0e55_6827_a7b1],
+        [0xa6a1_9a1f_34e0_d751, 0x9661_0878_3e74_21a5, 0xfb01_4595_e618_72aa],
     ],
     [
         // soup
-        [0x19dd_92ee_0c50_f005, 0x1cdc_1e65_b531_1c64, 0x8a88_862e_5f73_6c0f],
-        [0x401d_b4d3_97d3_0aa7, 0x1cdc_1e65_b531_1c64, 0x9e8d_ffdf_05ce_2595],
-        [0xbf0b_3c7f_b221_ea18, 0x4b17_30e4_8282_8d25, 0xe36c_daa8_36fa_db59],
+        [0xf971_8b67_d2bf_0f95, 0x1cdc_1e65_b531_1c64, 0x7081_bb85_d165_7840],
+        [0xe6f5_41d6_ba60_768e, 0x1cdc_1e65_b531_1c64, 0x9e8d_ffdf_05ce_2595],
+        [0x31fc_1315_63e6_3100, 0x4b17_30e4_8282_8d25, 0xa6f3_f544_4054_1b70],
     ],
     [
         // hostile
-        [0xb995_c810_2633_9d73, 0xc20b_9664_5385_8d25, 0x94e0_b17e_2a5f_1f57],
-        [0x7c1f_222b_9de2_ae09, 0xc20b_9664_5385_8d25, 0x8110_dfb9_3ca3_1fc4],
-        [0xc3c9_3141_42a0_f709, 0xc20b_9664_5385_8d25, 0xe5eb_3181_1abb_504e],
+        [0xce73_88bc_37ab_602a, 0xc20b_9664_5385_8d25, 0xc740_f43c_9ff9_f215],
+        [0xbf18_33ee_ecbd_2399, 0xc20b_9664_5385_8d25, 0x1463_b9dd_52eb_03ed],
+        [0x186c_d51f_5da1_8dd3, 0xc20b_9664_5385_8d25, 0x7677_e6b5_3fc2_2f84],
     ],
 ];
 

@@ -12,11 +12,18 @@
 //! **Depth.** 1/w is a plane on the screen. For each sub-tile a draw needs a bound that is not nearer than the
 //! triangle anywhere in the sub-tile's square, a query one that is not farther: the plane at the
 //! farthest (nearest) corner, less (more) a margin for rounding, clamped to the farthest (nearest) vertex.
-//! Let `u = 2^-24`, `Z` the nearest vertex, `gx = Z * (|dy1| + |dy2|) / area`, `gy` likewise with dx, `ex` and `ey`
-//! the farthest that a sub-tile's corner lies from the first corner. Rounding of the vertices' depths, the differences,
-//! products and quotient makes at most `11 u gx` of error in the slope along x; the value at the
-//! anchor adds `4 u (Z + gx ex + gy ey)`, the walk to the sub-tile and its corner `9 u` times the same.
-//! The margin is `32 u (Z + gx ex + gy ey)`. On slivers it is large, and the clamp decides.
+//! The slopes and the value at the anchor, the corner of the box's first tile, are computed in f64 from exact differences and
+//! rounded once. In f32 what cancels there took a hundredth and more off the depths of floors and walls that reach behind the
+//! eye, whose vertices on the near plane are far away and far nearer than what is on the screen.
+//!
+//! Let `u = 2^-24`, `Z` the nearest vertex, and `s` the largest coordinate and a tile's width, so that no two of the points
+//! here are farther apart than `2 s`. The terms of the value at the anchor sum to at most `Z + 16 Z s^2 / area`, which is
+//! below `24 Z s^2 / area`. The quotient comes from f32 by one step of Newton's iteration, off by `2^-46`, and the roundings
+//! in f64 are far smaller: together less than `2^-40 Z s^2 / area`. Beyond 2^25 the area is not exact, but off by at
+//! most 2, which adds less than `4 / area` of those terms. What follows is of the screen's size, at most
+//! `a = |anchor| + |slope across| * box's width + |slope down| * box's height`: rounding the three, the corner, the
+//! margin and the walk to the sub-tile sum to at most `10 u a`, a vertex's depth adds one. The margin is `16 u a` and what
+//! was said of f64. On slivers it is large, and the clamp decides.
 
 use super::batch::Batch;
 use super::boxes::{Boxes, Look, QUERY_SLACK};
@@ -31,8 +38,12 @@ const WIDE: f32 = (1 << 23) as f32;
 const NOWHERE: f32 = 1e30;
 /// Beyond every screen, in pixels, and still an integer.
 const BEYOND: f32 = (1 << 20) as f32;
-/// 32 roundings.
-const MARGIN: f32 = 32.0 / (1 << 24) as f32;
+/// Beyond this, in 1/256 pixel, the area is not exact.
+const INEXACT: f32 = (1 << 25) as f32;
+/// 16 roundings of f32.
+const MARGIN: f32 = 16.0 / (1 << 24) as f32;
+/// What is off in f64: see above.
+const FINE_MARGIN: f32 = 1.0 / (1_u64 << 40) as f32;
 /// One unit in the last place and a half: from a vertex's rounded 1/w to a bound of the true one.
 pub(super) const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
 
@@ -95,12 +106,13 @@ pub(super) fn set_up<S: Simd>(
     let (v0, mut v1, mut v2) =
         (turn(s, b_top, c_top, a, b, c), turn(s, b_top, c_top, b, c, a), turn(s, b_top, c_top, c, a, b));
     if both_sides {
-        let back = s.lt(doubled_area(s, v0, v1, v2).0, s.f(0.0));
+        let back = s.lt(s.d_to_f(doubled_area(s, v0, v1, v2).0), s.f(0.0));
         for k in 0..3 {
             (v1[k], v2[k]) = (s.select(back, v2[k], v1[k]), s.select(back, v1[k], v2[k]));
         }
     }
-    let (area, deltas) = doubled_area(s, v0, v1, v2);
+    let (exact_area, deltas) = doubled_area(s, v0, v1, v2);
+    let area = s.d_to_f(exact_area);
     let alive = if query { inside } else { s.and_m(inside, s.lt(s.f(0.0), area)) };
 
     // SAFETY (of the stores below): the arrays of a batch hold the lanes of any vector.
@@ -193,23 +205,28 @@ pub(super) fn set_up<S: Simd>(
 
     // Depth plane.
     let farthest = s.min(v0[2], s.min(v1[2], v2[2]));
-    let (dx1, dy1) = (s.sub(v1[0], v0[0]), s.sub(v1[1], v0[1]));
-    let (dx2, dy2) = (s.sub(v2[0], v0[0]), s.sub(v2[1], v0[1]));
-    let (dz1, dz2) = (s.sub(v1[2], v0[2]), s.sub(v2[2], v0[2]));
-    let inverse = s.div(s.f(1.0), s.max(area, s.f(1.0)));
-    let across = s.mul(s.sub(s.mul(dz1, dy2), s.mul(dz2, dy1)), inverse);
-    let down = s.mul(s.sub(s.mul(dx1, dz2), s.mul(dx2, dz1)), inverse);
+    let one = s.f(1.0);
+    let inverse = s.div(one, s.max(area, one));
+    let half_way = s.to_d(inverse);
+    let fine = s.mul_d(half_way, s.sub_d(s.d(2.0), s.mul_d(s.max_d(exact_area, s.d(1.0)), half_way)));
+    let z0 = s.to_d(v0[2]);
+    let (dz1, dz2) = (s.sub_d(s.to_d(v1[2]), z0), s.sub_d(s.to_d(v2[2]), z0));
+    let across = s.mul_d(s.sub_d(s.mul_d(dz1, dy_l), s.mul_d(dz2, dy_r)), fine);
+    let down = s.mul_d(s.sub_d(s.mul_d(dx_r, dz2), s.mul_d(dx_l, dz1)), fine);
     let (first_x, first_y) = (s.to_f(s.shl::<13>(tile_x0)), s.to_f(s.shl::<11>(tile_y0)));
     let (end_x, end_y) = (s.to_f(s.shl::<13>(s.add_i(tile_x1, s.i(1)))), s.to_f(s.shl::<11>(s.add_i(tile_y1, s.i(1)))));
-    let (from_x, from_y) = (s.sub(first_x, v0[0]), s.sub(first_y, v0[1]));
-    let reach_x = s.max(s.abs(from_x), s.abs(s.sub(end_x, v0[0])));
-    let reach_y = s.max(s.abs(from_y), s.abs(s.sub(end_y, v0[1])));
-    let steep_x = s.mul(s.mul(nearest, s.add(s.abs(dy1), s.abs(dy2))), inverse);
-    let steep_y = s.mul(s.mul(nearest, s.add(s.abs(dx1), s.abs(dx2))), inverse);
-    let margin = s.mul(s.add(nearest, s.add(s.mul(steep_x, reach_x), s.mul(steep_y, reach_y))), s.f(MARGIN));
+    let from = s.add_d(s.mul_d(across, s.sub_d(s.to_d(first_x), x0)), s.mul_d(down, s.sub_d(s.to_d(first_y), y0)));
+    let first = s.d_to_f(s.add_d(z0, from));
+    let (across, down) = (s.d_to_f(across), s.d_to_f(down));
+    // The margin.
+    let span = s.add(boxes.widest, s.f(8192.0));
+    let inexact = s.select(s.lt(s.f(INEXACT), boxes.widest), s.mul(inverse, s.f(64.0)), s.f(0.0));
+    let terms = s.mul(s.mul(nearest, inverse), s.mul(span, span));
+    let off = s.mul(terms, s.add(inexact, s.f(FINE_MARGIN)));
+    let rise = s.add(s.mul(s.abs(across), s.sub(end_x, first_x)), s.mul(s.abs(down), s.sub(end_y, first_y)));
+    let margin = s.add(off, s.mul(s.add(s.abs(first), rise), s.f(MARGIN)));
     // Per sub-tile of 8 by 4 pixels.
     let (across_sub, down_sub) = (s.mul(across, s.f(2048.0)), s.mul(down, s.f(1024.0)));
-    let first = s.add(v0[2], s.add(s.mul(across, from_x), s.mul(down, from_y)));
     let zero = s.f(0.0);
     let plane = if query {
         let corner = s.add(s.max(across_sub, zero), s.max(down_sub, zero));
@@ -235,15 +252,14 @@ struct Deltas<S: Simd> {
     left: (S::D, S::D),
 }
 
-/// Twice the area, positive for clockwise corners in rows that run down; exact before its rounding to
-/// f32 (which keeps the sign) for coordinates up to 2^25.
+/// Twice the area, positive for clockwise corners in rows that run down; exact for coordinates up to 2^25.
 #[inline(always)]
-fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (S::F, Deltas<S>) {
+fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (S::D, Deltas<S>) {
     let (x0, y0) = (s.to_d(v0[0]), s.to_d(v0[1]));
     let right = (s.sub_d(s.to_d(v1[0]), x0), s.sub_d(s.to_d(v1[1]), y0));
     let left = (s.sub_d(s.to_d(v2[0]), x0), s.sub_d(s.to_d(v2[1]), y0));
     let area = s.sub_d(s.mul_d(right.0, left.1), s.mul_d(left.0, right.1));
-    (s.d_to_f(area), Deltas { right, left })
+    (area, Deltas { right, left })
 }
 
 /// Of three corners, `y` where the second comes first, `z` where the third does, else `x`.
