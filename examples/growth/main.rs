@@ -3,6 +3,7 @@
 
 mod args;
 #[path = "../shared/growth/mod.rs"]
+#[allow(dead_code, reason = "the report uses more of it")]
 mod growth;
 #[cfg(all(test, target_os = "linux"))]
 #[path = "../../tests/native/mod.rs"]
