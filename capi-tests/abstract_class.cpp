@@ -160,7 +160,13 @@ void Switches(bool chosen)
     CHECK_EQ(MOC_GetUpdateRule(moc_link::ObjectOf(moc), &rule), MOC_STATUS_OK);
     CHECK_EQ(MOC_GetImplementation(moc_link::ObjectOf(moc), &implementation), MOC_STATUS_OK);
     const int32_t unless_accurate = chosen ? MOC_UPDATE_RULE_QUICK : MOC_UPDATE_RULE_THREE_LAYER;
-    CHECK_EQ(rule, QUICK_MASK == 0 ? MOC_UPDATE_RULE_ACCURATE : unless_accurate);
+#ifdef MOC_FOUR_LAYERS
+    const bool four_layers = MOC_FOUR_LAYERS;
+#else
+    const bool four_layers = false;
+#endif
+    const int32_t unless_four = QUICK_MASK == 0 ? MOC_UPDATE_RULE_ACCURATE : unless_accurate;
+    CHECK_EQ(rule, four_layers ? MOC_UPDATE_RULE_FOUR_LAYER : unless_four);
     const bool named = implementation >= MOC_SSE2 && implementation <= MOC_AVX512;
     CHECK_EQ(moc->GetImplementation(), named ? implementation : MOC_SSE2);
     if (chosen && USE_AVX512 == 0)

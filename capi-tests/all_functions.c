@@ -414,7 +414,7 @@ int main(void)
     versions();
     transform();
     callbacks();
-    for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_ACCURATE; rule++) {
+    for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++) {
         properties(rule);
         for (i = 0; i < sizeof implementations / sizeof *implementations; i++) {
             wall(implementations[i], rule, MOC_Y_AXIS_DOWN);

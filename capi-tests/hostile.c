@@ -404,7 +404,7 @@ int main(void)
     for (i = 0; i < N_IMPLEMENTATIONS; i++) {
         int32_t rule;
         rectangles(IMPLEMENTATIONS[i]);
-        for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_ACCURATE; rule++)
+        for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++)
             strange_numbers(IMPLEMENTATIONS[i], rule);
     }
     CHECK_EQ(guarded_live_blocks(), 0);

@@ -13,3 +13,4 @@ struct Report
 Report ReportDefault();
 Report ReportQuick();
 Report ReportAccurate();
+Report ReportFourLayer();

@@ -18,7 +18,9 @@ namespace
 typedef MaskedOcclusionCulling MOC;
 
 const int32_t IMPLEMENTATIONS[] = {MOC_SCALAR, MOC_SSE2, MOC_SSE41, MOC_AVX2, MOC_AVX512};
-const int32_t RULES[] = {MOC_UPDATE_RULE_THREE_LAYER, MOC_UPDATE_RULE_QUICK, MOC_UPDATE_RULE_ACCURATE};
+const int N_RULES = 4;
+const int32_t RULES[N_RULES] = {MOC_UPDATE_RULE_THREE_LAYER, MOC_UPDATE_RULE_QUICK, MOC_UPDATE_RULE_ACCURATE,
+                                MOC_UPDATE_RULE_FOUR_LAYER};
 
 MOC *Make(unsigned int width, unsigned int height, int32_t implementation = MOC_AVX512,
           int32_t rule = MOC_UPDATE_RULE_THREE_LAYER)
@@ -141,8 +143,8 @@ void SameAsOneThread()
         }
     };
     for (const Size &size : sizes) {
-        std::vector<float> expected[3];
-        for (int rule = 0; rule < 3; rule++) {
+        std::vector<float> expected[N_RULES];
+        for (int rule = 0; rule < N_RULES; rule++) {
             MOC *moc = Make(size.width, size.height, MOC_AVX512, RULES[rule]);
             Direct direct(moc);
             frame(few, wall, many, &direct, nullptr);
@@ -156,7 +158,7 @@ void SameAsOneThread()
         int turn = 0;
         for (unsigned int t : threads) {
             for (const unsigned int *b : bins) {
-                const int rule = turn % 3;
+                const int rule = turn % N_RULES;
                 MOC *moc = Make(size.width, size.height, IMPLEMENTATIONS[turn++ % 5], RULES[rule]);
                 CullingThreadpool pool(t, b[0], b[1]);
                 pool.SetBuffer(moc);
@@ -254,7 +256,7 @@ void SmallJobs()
     for (unsigned int threads : {0u, 2u, 5u}) {
         for (unsigned int jobs : {1u, 2u, 32u}) {
             for (int round = 0; round < 3; round++, seed++) {
-                const int32_t rule = RULES[seed % 3];
+                const int32_t rule = RULES[seed % N_RULES];
                 MOC *one = Make(257, 65, MOC_AVX512, rule), *many = Make(257, 65, IMPLEMENTATIONS[seed % 5], rule);
                 Direct direct(one);
                 const std::vector<std::vector<float>> expected = RandomCalls(direct, one, props, seed);

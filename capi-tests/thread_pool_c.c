@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { W = 333, H = 77, N = 200, OTHERS = 3 };
+enum { W = 333, H = 77, N = 200, OTHERS = 4 };
 
 #define REST MOC_BACKFACE_NONE, MOC_CLIP_PLANE_ALL
 #define OK(call) CHECK_EQ(call, MOC_STATUS_OK)
@@ -55,7 +55,7 @@ static void merge(int32_t rule)
     draw(all, 50);
     draw(pooled, 50);
     for (i = 0; i < OTHERS; i++) {
-        others[i] = made[i] = make((rule + i) % 3);
+        others[i] = made[i] = make((rule + i) % 4);
         draw(made[i], (uint32_t)i);
     }
     others[OTHERS] = others[0]; /* once more */
@@ -253,7 +253,7 @@ static void every_function(void)
 int main(void)
 {
     int32_t rule;
-    for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_ACCURATE; rule++)
+    for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++)
         merge(rule);
     every_function();
     return check_report("thread_pool_c");

@@ -128,7 +128,7 @@ int main()
     const Scene scene;
     const int32_t implementations[] = {MOC_SCALAR, MOC_SSE2, MOC_SSE41, MOC_AVX2, MOC_AVX512};
     for (int32_t implementation : implementations)
-        for (int32_t rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_ACCURATE; rule++)
+        for (int32_t rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++)
             Run(implementation, rule, scene);
     return check_report("threads");
 }

@@ -14,7 +14,9 @@
  * MOC_RECORDER_ENABLE 1 this file calls it, and without it is empty.
  *
  * QUICK_MASK        1: the update rule of "Masked Software Occlusion Culling"; 0: that of "Masked Depth Culling for
- *                   Graphics Hardware"; not defined: three layers, the most accurate, unless the header was edited to 0.
+ *                   Graphics Hardware"; not defined: three layers, accurate in nearly any scene and order, unless the
+ *                   header was edited to 0.
+ * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK says. That header does not know this one.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * USE_D3D, PRECISE_COVERAGE, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them.
  *
@@ -30,6 +32,9 @@
 #define MOC_LINK_RULE_IS_CHOSEN 1
 #else
 #define MOC_LINK_RULE_IS_CHOSEN 0
+#endif
+#ifndef MOC_FOUR_LAYERS
+#define MOC_FOUR_LAYERS 0
 #endif
 #ifdef USE_AVX512
 #define MOC_LINK_CAP (!(USE_AVX512))
@@ -249,7 +254,9 @@ static_assert(sizeof(MaskedOcclusionCulling::TriList) == sizeof(MOC_TriList) &&
 
 int32_t UpdateRule()
 {
-#if !QUICK_MASK
+#if MOC_FOUR_LAYERS
+    return MOC_UPDATE_RULE_FOUR_LAYER;
+#elif !QUICK_MASK
     return MOC_UPDATE_RULE_ACCURATE;
 #elif MOC_LINK_RULE_IS_CHOSEN
     return MOC_UPDATE_RULE_QUICK;

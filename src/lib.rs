@@ -5,8 +5,8 @@
 //! doubt is answered [`CullingResult::Visible`].
 //!
 //! The buffer keeps no depth a pixel. Of each sub-tile of 8x4 pixels it keeps a reference depth, which no pixel is
-//! behind, and one or two working layers, each a depth and a mask of the pixels that it speaks for; triangles are
-//! taken in by one of three [`UpdateRule`]s (Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion
+//! behind, and one to three working layers, each a depth and a mask of the pixels that it speaks for; triangles are
+//! taken in by one of four [`UpdateRule`]s (Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion
 //! Culling", HPG 2016). Depth is 1/w: 0 is infinitely far, larger is nearer.
 //!
 //! Coverage is exact: vertices are snapped to 1/256 pixel, and a pixel is covered when its centre is, by the top-left

@@ -3,7 +3,9 @@
 //! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their least depths,
 //! and only where that does not settle it, sub-tile by sub-tile with their layers.
 
-use crate::buffer::{Accurate, Buffer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TileRect, UNTOUCHED};
+use crate::buffer::{
+    Accurate, Buffer, FourLayer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TileRect, UNTOUCHED,
+};
 use crate::simd::{self, Job, Simd};
 use crate::statistics::Tally;
 use crate::{CullingResult, Implementation, UpdateRule, YAxis};
@@ -34,6 +36,7 @@ pub(crate) fn test(
         UpdateRule::ThreeLayer => simd::run(implementation, Walk::<ThreeLayer>::new(buffer, pixels, depth)),
         UpdateRule::Quick => simd::run(implementation, Walk::<Quick>::new(buffer, pixels, depth)),
         UpdateRule::Accurate => simd::run(implementation, Walk::<Accurate>::new(buffer, pixels, depth)),
+        UpdateRule::FourLayer => simd::run(implementation, Walk::<FourLayer>::new(buffer, pixels, depth)),
     }
 }
 

@@ -46,7 +46,7 @@ fn object(update_rule: UpdateRule) -> MaskedOcclusionCulling {
 fn all_that_was_taken_is_given_back() {
     let _turn = TURN.lock().unwrap();
     LEFT.store(isize::MAX, SeqCst);
-    for rule in [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate] {
+    for rule in [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer] {
         let before = CALLS.load(SeqCst);
         let mut moc = object(rule);
         for size in [(64, 32), (1, 1), (1920, 1080), (1920, 1080), (7, 5)] {

@@ -28,7 +28,7 @@ const EXACT_ARRAYS: Program = Program { name: "exact_arrays", sources: &["exact_
 const PEER_STYLE: Program = Program { name: "peer_style", sources: &["peer_style.cpp"], cpp: true };
 const SWITCHES: Program = Program {
     name: "switches",
-    sources: &["switches_main.cpp", "switches_quick.cpp", "switches_accurate.cpp"],
+    sources: &["switches_main.cpp", "switches_quick.cpp", "switches_accurate.cpp", "switches_four_layer.cpp"],
     cpp: true,
 };
 const STATISTICS: Program = Program { name: "statistics", sources: &["statistics.cpp"], cpp: true };
@@ -226,8 +226,9 @@ fn headers_compile_without_warnings() {
 /// Each header with every switch the one way and the other, and the programs that `.ci/install-ways` installs.
 #[test]
 fn headers_compile_with_every_switch() {
-    const SWITCHES: [&str; 8] = [
+    const SWITCHES: [&str; 9] = [
         "QUICK_MASK",
+        "MOC_FOUR_LAYERS",
         "USE_D3D",
         "PRECISE_COVERAGE",
         "USE_AVX512",

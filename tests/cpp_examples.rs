@@ -150,7 +150,7 @@ fn demo_culls_what_is_behind() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (scene, result) = (folder.path().join("scene"), folder.path().join("result"));
     std::fs::write(&scene, &bytes).expect("the scene is written");
-    for rule in [&[][..], &[("QUICK_MASK", "1")], &[("QUICK_MASK", "0")]] {
+    for rule in [&[][..], &[("QUICK_MASK", "1")], &[("QUICK_MASK", "0")], &[("MOC_FOUR_LAYERS", "1")]] {
         let program = compile("demo.cpp", Link::Static, rule, folder.path());
         let output = native::run(Command::new(program).arg(&scene).arg(&result)).unwrap_or_else(|e| panic!("{e}"));
         assert!(output.contains("33.3% of those in view"), "{output}");

@@ -31,7 +31,13 @@ const BOTH_SIDES: DrawOptions = DrawOptions {
 fn no_depth_is_nearer_than_the_near_plane() {
     let mut random = fastrand::Rng::with_seed(1);
     let mut depth = vec![0.0; 64 * 48];
-    for (rule, near) in [(UpdateRule::ThreeLayer, 0.0), (UpdateRule::Quick, 0.25), (UpdateRule::Accurate, 0.0)] {
+    let rules = [
+        (UpdateRule::ThreeLayer, 0.0),
+        (UpdateRule::Quick, 0.25),
+        (UpdateRule::Accurate, 0.0),
+        (UpdateRule::FourLayer, 0.0),
+    ];
+    for (rule, near) in rules {
         let mut moc = object(rule, 64, 48);
         moc.set_near_clip_plane(near).unwrap();
         // Nothing nearer than 2^-30 is projected.

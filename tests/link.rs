@@ -53,6 +53,12 @@ fn with_every_switch_the_other_way() {
 }
 
 #[test]
+fn with_four_layers() {
+    run("abstract_class.cpp", &[("MOC_FOUR_LAYERS", "1")], &[CLASS, POOL]);
+    run("abstract_class.cpp", &[("MOC_FOUR_LAYERS", "1"), ("QUICK_MASK", "0")], &[CLASS, POOL]);
+}
+
+#[test]
 fn with_the_recorder_of_the_program() {
     run("abstract_recorder.cpp", &[("MOC_RECORDER_ENABLE", "1")], &[CLASS]);
 }

@@ -45,7 +45,11 @@ fn scenes_have_the_bits_and_counts_of_one_thread() {
             pool.wake_threads();
             for (width, height) in [(333, 205), (1, 1), (1030, 517)] {
                 for statistics in [false, true] {
-                    let update_rule = [UpdateRule::ThreeLayer, UpdateRule::Quick][usize::from(width == 1)];
+                    let update_rule = match width {
+                        1 => UpdateRule::Quick,
+                        333 => UpdateRule::ThreeLayer,
+                        _ => UpdateRule::FourLayer,
+                    };
                     let settings = Settings { statistics, update_rule, ..Settings::default() };
                     let mut direct = object(width, height, scene.near, settings);
                     pool.set_buffer(object(width, height, scene.near, settings));

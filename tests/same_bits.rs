@@ -74,39 +74,44 @@ fn hashes(scene: &Scene, implementation: Implementation, rule: UpdateRule) -> [u
     all.map(|h| h.0)
 }
 
-const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 
 /// By scene, then rule: buffer, answers, statistics.
-const GOLDEN: [[[u64; 3]; 3]; 5] = [
+const GOLDEN: [[[u64; 3]; 4]; 5] = [
     [
         // town
         [0x8939_81e6_81ac_4976, 0x253b_5a3b_36a8_3605, 0x5fb4_172d_1258_f2db],
         [0x51d9_9be4_2588_d24d, 0xd210_28c4_2893_4425, 0x11ad_2b3d_34b1_d303],
         [0xfe9a_1eba_91cd_9076, 0xe123_71fc_949c_ce85, 0x002c_b49c_5ca8_0719],
+        [0xcff0_e9ce_ad71_ae78, 0xd859_dfe8_0688_2425, 0xc1ac_4c27_d60f_6fcd],
     ],
     [
         // terrain
         [0xe9d0_9aae_9cd3_3332, 0x0da0_3ec1_9baf_17e5, 0x25e4_6355_ad4e_b987],
         [0xb796_a9ba_bb13_2860, 0x93c1_4b5a_0ae4_57e4, 0x2e3a_d36b_3c45_e41c],
         [0xb19c_d6e8_bb1d_147a, 0xc941_995d_11ff_0d45, 0x63ba_1eab_a86e_d509],
+        [0x4ec8_cada_ad4a_82ea, 0x0da0_3ec1_9baf_17e5, 0x25e4_6355_ad4e_b987],
     ],
     [
         // blocks
         [0x04b1_d8cb_ea1b_fc10, 0x9661_0878_3e74_21a5, 0xae18_4024_f414_f7c8],
         [0x2e68_32af_21ad_e59d, 0x1602_cffc_ed45_d625, 0xff28_0e55_6827_a7b1],
         [0xa6a1_9a1f_34e0_d751, 0x9661_0878_3e74_21a5, 0xfb01_4595_e618_72aa],
+        [0x8c7e_9225_7ccd_8873, 0x9661_0878_3e74_21a5, 0x993c_0c65_d635_4fe3],
     ],
     [
         // soup
         [0xf971_8b67_d2bf_0f95, 0x1cdc_1e65_b531_1c64, 0x7081_bb85_d165_7840],
         [0xe6f5_41d6_ba60_768e, 0x1cdc_1e65_b531_1c64, 0x9e8d_ffdf_05ce_2595],
         [0x31fc_1315_63e6_3100, 0x4b17_30e4_8282_8d25, 0xa6f3_f544_4054_1b70],
+        [0x1cc8_c312_b2e1_b8f9, 0x1cdc_1e65_b531_1c64, 0x7081_bb85_d165_7840],
     ],
     [
         // hostile
         [0xce73_88bc_37ab_602a, 0xc20b_9664_5385_8d25, 0xc740_f43c_9ff9_f215],
         [0xbf18_33ee_ecbd_2399, 0xc20b_9664_5385_8d25, 0x1463_b9dd_52eb_03ed],
         [0x186c_d51f_5da1_8dd3, 0xc20b_9664_5385_8d25, 0x7677_e6b5_3fc2_2f84],
+        [0xe0b3_5848_68bb_4b62, 0xc20b_9664_5385_8d25, 0xc740_f43c_9ff9_f215],
     ],
 ];
 

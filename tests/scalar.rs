@@ -17,7 +17,7 @@ fn object(update_rule: UpdateRule, y_axis: YAxis) -> MaskedOcclusionCulling {
 }
 
 fn every(test: impl Fn(MaskedOcclusionCulling)) {
-    for rule in [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate] {
+    for rule in [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer] {
         for axis in [YAxis::Down, YAxis::Up] {
             test(object(rule, axis));
         }

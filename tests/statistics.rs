@@ -8,7 +8,7 @@ use masked_occlusion_culling::{
 };
 use scenes::Scene;
 
-const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 
 fn vertices(scene: &Scene) -> Vertices<'_> {
     let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };

@@ -1,4 +1,4 @@
-//! The three update rules under random sequences of drawing, merging and asking: the buffer is never nearer
+//! The update rules under random sequences of drawing, merging and asking: the buffer is never nearer
 //! than an exact one, and no query calls hidden what an exact buffer shows.
 
 mod oracle;
@@ -34,7 +34,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     let edges = [-10.0..w + 10.0, -10.0..h + 10.0, 0.1..40.0, 0.1..20.0];
     let step = prop_oneof![
         3 => batch().prop_map(Step::Draw),
-        1 => (batch(), 0..3usize, 0..8usize).prop_map(|(b, r, i)| Step::Merge(b, r, i)),
+        1 => (batch(), 0..RULES.len(), 0..8usize).prop_map(|(b, r, i)| Step::Merge(b, r, i)),
         2 => (edges, 0..=7i32).prop_map(|([x, y, w, h], k)| Step::Rectangle([x, y, x + w, y + h], k)),
         2 => proptest::collection::vec(of_any_kind(SIZE), 1..3).prop_map(Step::Mesh),
     ];
@@ -128,6 +128,11 @@ fn quick_is_conservative() {
 #[test]
 fn accurate_is_conservative() {
     sequences(UpdateRule::Accurate);
+}
+
+#[test]
+fn four_layer_is_conservative() {
+    sequences(UpdateRule::FourLayer);
 }
 
 /// And not by answering nothing: whatever was drawn before, a wall in front of it hides what is well behind.

@@ -13,8 +13,12 @@ use scenes::{Scene, town};
 pub const WIDTH: u32 = 1920;
 pub const HEIGHT: u32 = 1080;
 
-pub const RULES: [(&str, UpdateRule); 3] =
-    [("three-layer", UpdateRule::ThreeLayer), ("quick", UpdateRule::Quick), ("accurate", UpdateRule::Accurate)];
+pub const RULES: [(&str, UpdateRule); 4] = [
+    ("three-layer", UpdateRule::ThreeLayer),
+    ("quick", UpdateRule::Quick),
+    ("accurate", UpdateRule::Accurate),
+    ("four-layer", UpdateRule::FourLayer),
+];
 
 /// An object of a size that engines use, or one larger, on the best instruction set.
 pub fn object(update_rule: UpdateRule) -> MaskedOcclusionCulling {

@@ -107,6 +107,7 @@ impl Rule {
             Rule::ThreeLayer => None,
             Rule::Quick => Some(("QUICK_MASK", "1")),
             Rule::Accurate => Some(("QUICK_MASK", "0")),
+            Rule::FourLayer => Some(("MOC_FOUR_LAYERS", "1")),
         }
     }
 }

@@ -105,5 +105,5 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
 fn family(rng: &mut Rng) -> Check<Family> {
     // The same axis more often than not, so that merging is allowed.
     // Some of what threads leave out, they draw where it is counted.
-    Family::new(rng.i32(0..3), i32::from(rng.u8(..4) == 0), rng.bool(), rng.bool())
+    Family::new(rng.i32(0..4), i32::from(rng.u8(..4) == 0), rng.bool(), rng.bool())
 }

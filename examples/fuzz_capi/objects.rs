@@ -68,7 +68,7 @@ impl Driver<'_> {
         let rng = &mut self.rng;
         let mut settings = MOC_Settings {
             implementation: hostile::enumeration(rng, &[-1, 0, 1, 2, 3, 16, 4, -2]),
-            update_rule: hostile::enumeration(rng, &[0, 1, 2, 3, -1]),
+            update_rule: hostile::enumeration(rng, &[0, 1, 2, 3, 4, -1]),
             y_axis: hostile::enumeration(rng, &[0, 1, 2]),
             precise_coverage: hostile::enumeration(rng, &[0, 1, 2]),
             statistics: hostile::enumeration(rng, &[0, 1, 2]),
@@ -81,7 +81,7 @@ impl Driver<'_> {
             _ => {}
         }
         let enums = [-1, 0, 1, 2, 3, 16].contains(&settings.implementation)
-            && (0..=2).contains(&settings.update_rule)
+            && (0..=3).contains(&settings.update_rule)
             && (0..=1).contains(&settings.y_axis)
             && (0..=1).contains(&settings.precise_coverage)
             && (0..=1).contains(&settings.statistics);

@@ -36,8 +36,12 @@ use masked_occlusion_culling::UpdateRule;
 use landscape::Landscape;
 use truth::Truth;
 
-const RULES: [(&str, UpdateRule); 3] =
-    [("three-layer", UpdateRule::ThreeLayer), ("quick", UpdateRule::Quick), ("accurate", UpdateRule::Accurate)];
+const RULES: [(&str, UpdateRule); 4] = [
+    ("three-layer", UpdateRule::ThreeLayer),
+    ("quick", UpdateRule::Quick),
+    ("accurate", UpdateRule::Accurate),
+    ("four-layer", UpdateRule::FourLayer),
+];
 
 /// Compares one buffer for all with a buffer for terrain and one for foreground, merged.
 #[derive(Parser)]

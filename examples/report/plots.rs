@@ -13,6 +13,7 @@ use crate::survey::{Point, Survey};
 const BLUE_OF: RGBColor = RGBColor(0, 90, 181);
 const ORANGE: RGBColor = RGBColor(220, 90, 0);
 const GREEN: RGBColor = RGBColor(0, 140, 90);
+const PURPLE: RGBColor = RGBColor(150, 60, 170);
 const GREY: RGBColor = RGBColor(110, 110, 110);
 const SIZE: (u32, u32) = (820, 520);
 const FONT: (&str, i32) = ("sans-serif", 14);
@@ -22,6 +23,7 @@ fn colour(rule: Rule) -> RGBColor {
         Rule::ThreeLayer => BLUE_OF,
         Rule::Quick => ORANGE,
         Rule::Accurate => GREEN,
+        Rule::FourLayer => PURPLE,
     }
 }
 

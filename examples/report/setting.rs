@@ -28,7 +28,7 @@ pub struct Setting {
     pub threads: u32,
 }
 
-pub const RULES: [Rule; 3] = [Rule::ThreeLayer, Rule::Quick, Rule::Accurate];
+pub const RULES: [Rule; 4] = [Rule::ThreeLayer, Rule::Quick, Rule::Accurate, Rule::FourLayer];
 pub const ORDERS: [Order; 3] = [Order::Near, Order::Random, Order::Far];
 pub const BUFFERS: [usize; 3] = [1, 2, 4];
 /// The screen: who shows on it is the truth for all settings.
@@ -114,6 +114,7 @@ impl Rule {
             Rule::ThreeLayer => "three layers",
             Rule::Quick => "quick",
             Rule::Accurate => "accurate",
+            Rule::FourLayer => "four layers",
         }
     }
 }

@@ -53,7 +53,7 @@ pub fn rules(surveys: &[Survey]) -> Table {
         table.head.push("time".into());
     }
     // Sums for the last line: shares of objects, of boxes, logarithms of times.
-    let mut sums = [[0.0; 3]; 3];
+    let mut sums = RULES.map(|_| [0.0; 3]);
     let mut count = 0.0;
     for survey in surveys {
         for order in ORDERS {

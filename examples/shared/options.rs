@@ -9,6 +9,7 @@ pub enum Rule {
     ThreeLayer = 0,
     Quick = 1,
     Accurate = 2,
+    FourLayer = 3,
 }
 
 /// An instruction set, in the numbers of the C++ class.
@@ -28,6 +29,7 @@ impl From<Rule> for UpdateRule {
             Rule::ThreeLayer => Self::ThreeLayer,
             Rule::Quick => Self::Quick,
             Rule::Accurate => Self::Accurate,
+            Rule::FourLayer => Self::FourLayer,
         }
     }
 }

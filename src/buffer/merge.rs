@@ -2,7 +2,9 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{Accurate, Buffer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, TileRect, Touched, choose, load};
+use super::{
+    Accurate, Buffer, FourLayer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, TileRect, Touched, choose, load,
+};
 use crate::simd::{self, Job, Simd};
 use crate::{Implementation, UpdateRule};
 
@@ -34,6 +36,7 @@ impl Job for Merge<'_> {
                     UpdateRule::ThreeLayer => row.into_rule::<T, ThreeLayer>(s),
                     UpdateRule::Quick => row.into_rule::<T, Quick>(s),
                     UpdateRule::Accurate => row.into_rule::<T, Accurate>(s),
+                    UpdateRule::FourLayer => row.into_rule::<T, FourLayer>(s),
                 }
             }
         }
@@ -55,6 +58,7 @@ impl Row<'_> {
             UpdateRule::ThreeLayer => self.tiles::<T, R, ThreeLayer>(s),
             UpdateRule::Quick => self.tiles::<T, R, Quick>(s),
             UpdateRule::Accurate => self.tiles::<T, R, Accurate>(s),
+            UpdateRule::FourLayer => self.tiles::<T, R, FourLayer>(s),
         }
     }
 

@@ -3,8 +3,8 @@
 //! The screen is cut into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i`
 //! of a vector is the sub-tile in column `i % 4` and row `i / 4`. Bit `8 * y + x` of a mask is the pixel
 //! in column `x` and row `y` of the sub-tile. In memory two tiles, one below the other, are a block: five planes of
-//! sixteen words (20 bytes a sub-tile) under the three-layer rule and three (12 bytes) under the others, plane after
-//! plane, the upper tile's eight words first. So a plane is one cache line, vectors of sixteen lanes take a
+//! sixteen words (20 bytes a sub-tile) under the three-layer rule, seven (28 bytes) under the four-layer rule and three
+//! (12 bytes) under the others, plane after plane, the upper tile's eight words first. So a plane is one cache line, vectors of sixteen lanes take a
 //! block at once, and vectors of eight lanes half of it.
 //!
 //! Beside them each tile has the least of its reference depths, so that a triangle or rectangle behind
@@ -17,13 +17,17 @@
 
 mod accurate;
 pub(crate) mod areas;
+mod four_layer;
 pub(crate) mod merge;
 pub(crate) mod pixels;
 mod quick;
 mod rule;
+#[cfg(test)]
+mod tests;
 mod three_layer;
 
 pub(crate) use accurate::Accurate;
+pub(crate) use four_layer::FourLayer;
 pub(crate) use quick::Quick;
 pub(crate) use rule::{Planes, Rule};
 pub(crate) use three_layer::ThreeLayer;
@@ -268,8 +272,10 @@ impl Buffer {
 #[inline(always)]
 pub(crate) const fn plane_count(rule: UpdateRule) -> usize {
     match rule {
-        UpdateRule::ThreeLayer => 5,
-        UpdateRule::Quick | UpdateRule::Accurate => 3,
+        UpdateRule::ThreeLayer => ThreeLayer::PLANES,
+        UpdateRule::FourLayer => FourLayer::PLANES,
+        UpdateRule::Quick => Quick::PLANES,
+        UpdateRule::Accurate => Accurate::PLANES,
     }
 }
 
@@ -371,8 +377,10 @@ fn choose<S: Simd>(s: S, m: S::M, a: &Planes<S>, b: &Planes<S>) -> Planes<S> {
     Planes {
         z0: s.select(m, a.z0, b.z0),
         z_near: s.select(m, a.z_near, b.z_near),
+        z_mid: s.select(m, a.z_mid, b.z_mid),
         z_far: s.select(m, a.z_far, b.z_far),
         near: s.select_i(m, a.near, b.near),
+        mid: s.select_i(m, a.mid, b.mid),
         far: s.select_i(m, a.far, b.far),
     }
 }

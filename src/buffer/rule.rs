@@ -3,13 +3,16 @@
 use crate::simd::Simd;
 
 /// The sub-tiles of a tile, one a lane. `z0` is the reference depth: no pixel is farther. The near layer
-/// speaks for the pixels in `near`, which are at least as near as `z_near`; the far layer likewise
-/// (three-layer rule only). The layers are nested: the near pixels are among the far ones.
+/// speaks for the pixels in `near`, which are at least as near as `z_near`; so does the far layer (of the rules with three and
+/// four layers) and the one between (four layers). The layers are nested: the near pixels are among the middle ones, and
+/// those among the far ones.
 pub(crate) struct Planes<S: Simd> {
     pub z0: S::F,
     pub z_near: S::F,
+    pub z_mid: S::F,
     pub z_far: S::F,
     pub near: S::I,
+    pub mid: S::I,
     pub far: S::I,
 }
 
@@ -54,7 +57,7 @@ pub(crate) trait Rule {
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M;
 
     /// The layers from far to near, to be taken in by another buffer; those beyond `LAYERS` are nothing.
-    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3];
+    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 4];
 }
 
 /// Lanes where `coverage` holds a pixel and `depth` is nearer than `z0`.
@@ -77,7 +80,8 @@ macro_rules! two_plane_layout {
 
         #[inline(always)]
         fn empty<S: Simd>(s: S) -> Planes<S> {
-            Planes { z0: s.f(0.0), z_near: s.f(0.0), z_far: s.f(0.0), near: s.i(0), far: s.i(0) }
+            let (z, none) = (s.f(0.0), s.i(0));
+            Planes { z0: z, z_near: z, z_mid: z, z_far: z, near: none, mid: none, far: none }
         }
 
         #[inline(always)]
@@ -85,7 +89,7 @@ macro_rules! two_plane_layout {
             // SAFETY: the caller's contract.
             let (z0, z_near, near) =
                 unsafe { (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()), s.load_i(p.add(2 * BLOCK))) };
-            Planes { z0, z_near, z_far: s.f(0.0), near, far: s.i(0) }
+            Planes { z0, z_near, near, ..Self::empty(s) }
         }
 
         #[inline(always)]
@@ -121,8 +125,8 @@ macro_rules! two_plane_layout {
         }
 
         #[inline(always)]
-        fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3] {
-            [(s.i(-1), planes.z0), (planes.near, planes.z_near), (s.i(0), planes.z0)]
+        fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 4] {
+            [(s.i(-1), planes.z0), (planes.near, planes.z_near), (s.i(0), planes.z0), (s.i(0), planes.z0)]
         }
     };
 }

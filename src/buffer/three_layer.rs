@@ -16,7 +16,8 @@ impl Rule for ThreeLayer {
 
     #[inline(always)]
     fn empty<S: Simd>(s: S) -> Planes<S> {
-        Planes { z0: s.f(0.0), z_near: s.f(0.0), z_far: s.f(0.0), near: s.i(-1), far: s.i(-1) }
+        let (z, full) = (s.f(0.0), s.i(-1));
+        Planes { z0: z, z_near: z, z_mid: z, z_far: z, near: full, mid: s.i(0), far: full }
     }
 
     #[inline(always)]
@@ -29,6 +30,7 @@ impl Rule for ThreeLayer {
                 z_far: s.load_f(p.add(2 * BLOCK).cast()),
                 near: s.load_i(p.add(3 * BLOCK)),
                 far: s.load_i(p.add(4 * BLOCK)),
+                ..Self::empty(s)
             }
         }
     }
@@ -47,7 +49,7 @@ impl Rule for ThreeLayer {
 
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
-        let Planes { z0, z_near, z_far, near, far } = *planes;
+        let Planes { z0, z_near, z_far, near, far, .. } = *planes;
         // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the
         // reference. Nothing here waits for which lanes are alive: triangles that follow each other often meet in the same tile,
         // and the next one waits for what this one stores.
@@ -79,6 +81,7 @@ impl Rule for ThreeLayer {
             near: s.select_i(drop_a, mask_b, mask_a),
             z_far: s.select(drop_c, z_b, z_c),
             far: s.select_i(drop_c, mask_b, mask_c),
+            ..*planes
         };
         Inserted { live: s.lt(z0, t), merged: s.lt(z0, risen) }
     }
@@ -94,7 +97,8 @@ impl Rule for ThreeLayer {
             }
             // What `insert` makes of it: the near layer becomes the far one, and nothing hides behind it any more.
             let full = s.i(-1);
-            Self::store(s, p, &Planes { z0: depth, z_near: depth, z_far: z_near, near: full, far: full });
+            let planes = Planes { z0: depth, z_near: depth, z_far: z_near, near: full, far: full, ..Self::empty(s) };
+            Self::store(s, p, &planes);
             true
         }
     }
@@ -109,7 +113,7 @@ impl Rule for ThreeLayer {
     }
 
     #[inline(always)]
-    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 3] {
-        [(s.i(-1), planes.z0), (planes.far, planes.z_far), (planes.near, planes.z_near)]
+    fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 4] {
+        [(s.i(-1), planes.z0), (planes.far, planes.z_far), (planes.near, planes.z_near), (s.i(0), planes.z0)]
     }
 }

@@ -106,7 +106,8 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
 }
 
 /// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
-/// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE).
+/// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
+/// MOC_UPDATE_RULE_FOUR_LAYER).
 ///
 /// It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
 /// centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.

@@ -27,12 +27,15 @@ pub enum MOC_Implementation {
 /// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
 #[repr(i32)]
 pub enum MOC_UpdateRule {
-    /// One reference depth and two working layers: the most accurate, in any order. The default.
+    /// One reference depth and two working layers: accurate in nearly any scene and order. The default.
     MOC_UPDATE_RULE_THREE_LAYER = 0,
     /// Hasselgren, Andersson, Akenine-Moller: "Masked Software Occlusion Culling", 2016.
     MOC_UPDATE_RULE_QUICK = 1,
     /// After Andersson, Hasselgren, Akenine-Moller: "Masked Depth Culling for Graphics Hardware", 2015.
     MOC_UPDATE_RULE_ACCURATE = 2,
+    /// One reference depth and three working layers: the most accurate, and the slowest. It pays where dense
+    /// geometry is drawn in no order.
+    MOC_UPDATE_RULE_FOUR_LAYER = 3,
 }
 
 /// The direction in which screen rows are counted.
@@ -268,6 +271,7 @@ const _: () = {
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32 == UpdateRule::ThreeLayer as i32);
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_QUICK as i32 == UpdateRule::Quick as i32);
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_ACCURATE as i32 == UpdateRule::Accurate as i32);
+    assert!(MOC_UpdateRule::MOC_UPDATE_RULE_FOUR_LAYER as i32 == UpdateRule::FourLayer as i32);
     assert!(MOC_YAxis::MOC_Y_AXIS_DOWN as i32 == YAxis::Down as i32);
     assert!(MOC_YAxis::MOC_Y_AXIS_UP as i32 == YAxis::Up as i32);
     assert!(MOC_BackfaceWinding::MOC_BACKFACE_NONE as i32 == BackfaceWinding::None as i32);
@@ -302,6 +306,7 @@ pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Error> {
         0 => UpdateRule::ThreeLayer,
         1 => UpdateRule::Quick,
         2 => UpdateRule::Accurate,
+        3 => UpdateRule::FourLayer,
         _ => return Err(Error::InvalidEnum),
     })
 }

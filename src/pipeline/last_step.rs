@@ -13,8 +13,8 @@ use super::traverse::{Lists, Way, traverse};
 use crate::UpdateRule;
 use crate::bins::TriList;
 use crate::buffer::{
-    Accurate, Buffer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect, Touched, areas,
-    load,
+    Accurate, Buffer, FourLayer, Quick, Rule, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, TilePlace, TileRect,
+    Touched, areas, load,
 };
 use crate::simd::{Apart, Simd};
 use crate::statistics::Tally;
@@ -139,7 +139,7 @@ impl<T: Simd> Draw<'_, T> {
     #[inline(always)]
     fn update<const COUNT: bool>(&mut self, batch: &Batch, alive: &Alive) -> (u64, u64) {
         let &mut Self { t, buffer, clip, ref mut lists, ref mut drawn } = self;
-        // Apart: what comes before does not depend on the rule, and is compiled once for all three.
+        // Apart: what comes before does not depend on the rule, and is compiled once for all rules.
         let way = Way { buffer, clip, batch, alive, lists };
         let (counts, tiles) = match buffer.rule() {
             UpdateRule::ThreeLayer => {
@@ -147,6 +147,7 @@ impl<T: Simd> Draw<'_, T> {
             }
             UpdateRule::Quick => t.apart(Traverse { way, step: Update::<Quick, COUNT>::new(buffer) }).1.done(),
             UpdateRule::Accurate => t.apart(Traverse { way, step: Update::<Accurate, COUNT>::new(buffer) }).1.done(),
+            UpdateRule::FourLayer => t.apart(Traverse { way, step: Update::<FourLayer, COUNT>::new(buffer) }).1.done(),
         };
         if let Some(count) = drawn {
             // SAFETY: nobody else uses the clip's tiles.
@@ -310,6 +311,7 @@ impl<T: Simd> LastStep for Query<'_, T> {
             UpdateRule::ThreeLayer => compared(t.apart(Traverse { way, step: Compare::<ThreeLayer>::new(buffer) })),
             UpdateRule::Quick => compared(t.apart(Traverse { way, step: Compare::<Quick>::new(buffer) })),
             UpdateRule::Accurate => compared(t.apart(Traverse { way, step: Compare::<Accurate>::new(buffer) })),
+            UpdateRule::FourLayer => compared(t.apart(Traverse { way, step: Compare::<FourLayer>::new(buffer) })),
         };
         self.found |= touches || alive.rasterized != alive.lanes;
         if !self.found && stopped.is_none() {

@@ -1,5 +1,5 @@
 //! Ten thousand layers in one sub-tile of 8x4 pixels, in every order that tells the rules apart: foliage, hair, a city
-//! seen along its streets. A sub-tile keeps two or three depths of them.
+//! seen along its streets. A sub-tile keeps two to four depths of them.
 
 use masked_occlusion_culling::{UpdateRule, YAxis};
 
@@ -9,11 +9,12 @@ use crate::cases::subject::Subject;
 use crate::oracle::snap::snapped;
 use crate::oracle::{Oracle, Triangle, UNIT};
 
-pub const CASES: &[&Case] = &[&THREE_LAYER, &QUICK, &ACCURATE];
+pub const CASES: &[&Case] = &[&THREE_LAYER, &QUICK, &ACCURATE, &FOUR_LAYER];
 
 static THREE_LAYER: Case = Case::new("10,000 layers in a sub-tile, three layers", || layers(UpdateRule::ThreeLayer));
 static QUICK: Case = Case::new("10,000 layers in a sub-tile, quick", || layers(UpdateRule::Quick));
 static ACCURATE: Case = Case::new("10,000 layers in a sub-tile, accurate", || layers(UpdateRule::Accurate));
+static FOUR_LAYER: Case = Case::new("10,000 layers in a sub-tile, four layers", || layers(UpdateRule::FourLayer));
 
 const SIZE: (usize, usize) = (8, 4);
 const LAYERS: u32 = 10_000;
@@ -123,6 +124,11 @@ fn pixels(measured: &mut Measured, subject: &Subject, oracle: &Oracle) {
 #[test]
 fn ten_thousand_layers_with_three_layers() {
     THREE_LAYER.measured().assert_exact().assert_behind(0.02, 5e-5);
+}
+
+#[test]
+fn ten_thousand_layers_with_four_layers() {
+    FOUR_LAYER.measured().assert_exact().assert_behind(0.02, 5e-5);
 }
 
 /// The rule of HPG 2016.

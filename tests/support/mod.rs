@@ -11,7 +11,8 @@ use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 
 use crate::oracle::{Oracle, Triangle, UNIT, Vertex, depth_at_pixel, span, useful_depth};
 
-pub const RULES: [UpdateRule; 3] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate];
+pub const RULES: [UpdateRule; 4] =
+    [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 pub const AXES: [YAxis; 2] = [YAxis::Down, YAxis::Up];
 
 /// Both sides, all planes, no matrix.

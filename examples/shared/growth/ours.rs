@@ -56,6 +56,7 @@ impl Culler for Ours {
             Rule::ThreeLayer => "three layers",
             Rule::Quick => "quick",
             Rule::Accurate => "accurate",
+            Rule::FourLayer => "four layers",
         };
         format!("ours ({rule}; {})", isa_name(isa))
     }
