@@ -247,7 +247,7 @@ enum MOC_UpdateRule
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * One reference depth and two working layers: the most accurate, in any order. The default.
+     * One reference depth and two working layers: accurate in nearly any scene and order. The default.
      */
     MOC_UPDATE_RULE_THREE_LAYER = 0,
     /**
@@ -258,6 +258,11 @@ enum MOC_UpdateRule
      * After Andersson, Hasselgren, Akenine-Moller: "Masked Depth Culling for Graphics Hardware", 2015.
      */
     MOC_UPDATE_RULE_ACCURATE = 2,
+    /**
+     * One reference depth and three working layers: the most accurate, and the slowest. It pays where dense
+     * geometry is drawn in no order.
+     */
+    MOC_UPDATE_RULE_FOUR_LAYER = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -748,7 +753,8 @@ MOC_Status MOC_Destroy(MaskedOcclusionCulling *moc);
 
 /**
  * Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
- * already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE).
+ * already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
+ * MOC_UPDATE_RULE_FOUR_LAYER).
  *
  * It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
  * centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
