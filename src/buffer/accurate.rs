@@ -33,7 +33,7 @@ impl Rule for Accurate {
         let full = s.and_m(live, s.eq_i(both, s.i(-1)));
         let triangle_to_layer = s.abs(s.sub(depth, z1));
         let layer_to_reference = s.sub(z1, z0);
-        // Nothing is ever lost to an empty reference.
+        // A triangle is not lost to an empty reference.
         let vacant = s.eq(z0, s.f(0.0));
         let triangle_to_reference = s.select(vacant, s.f(f32::MAX), s.sub(depth, z0));
         let closest =

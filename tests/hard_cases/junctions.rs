@@ -111,11 +111,11 @@ fn junctions(off: i64) -> Measured {
 /// Corners on the grid and exactly on the longer edge: every pixel on the seam is covered once.
 #[test]
 fn t_junctions_on_the_line_are_tight() {
-    ON.measured().assert_exact().assert_behind(4e-4, 0.0);
+    ON.measured().assert_exact().assert_behind(5e-6, 0.0);
 }
 
 /// A corner that snapping moved by one unit opens a gap: the pixels in it are those of the exact triangles.
 #[test]
 fn t_junctions_off_the_line_gape_as_exact_triangles_do() {
-    OFF.measured().assert_exact().assert_behind(4e-4, 0.0);
+    OFF.measured().assert_exact().assert_behind(5e-6, 0.0);
 }
