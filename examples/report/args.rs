@@ -36,6 +36,28 @@ pub struct Args {
     pub other: Option<PathBuf>,
 }
 
+impl Args {
+    /// What the page says after the name of the program; of files only their names.
+    pub fn shown(&self) -> String {
+        let mut shown = String::new();
+        let mut add = |is_set: bool, text: &str| {
+            if is_set {
+                shown += if shown.is_empty() { " -- " } else { " " };
+                shown += text;
+            }
+        };
+        add(self.short, "--short");
+        add(self.every, "--every");
+        add(true, &format!("--repeats {}", self.repeats));
+        add(self.only_files, "--only-files");
+        add(self.other.is_some(), "--other ...");
+        for file in &self.files {
+            add(true, &file.file_name().unwrap_or_default().to_string_lossy());
+        }
+        shown
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

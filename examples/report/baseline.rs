@@ -1,6 +1,5 @@
 //! The z-buffer of all pixels as something that is measured beside the library.
 
-use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -11,7 +10,7 @@ use crate::frame::occluders;
 use crate::growth::culler::Culler;
 use crate::growth::mesh::Mesh;
 use crate::hiz::Hiz;
-use crate::plots::Baseline;
+use crate::scatter::Baseline;
 use crate::setting::{ORDERS, SCREEN};
 use crate::subject::{Rectangle, Subject};
 use crate::survey::{Share, median};
@@ -19,26 +18,25 @@ use crate::visibility::Visibility;
 
 /// For the studies of cost.
 pub struct HizCuller {
-    hiz: RefCell<Hiz>,
+    hiz: Hiz,
     near: f32,
     /// The vertices of the meshes that were drawn, as this buffer reads them.
     positions: HashMap<*const [f32; 4], Vec<[f32; 4]>>,
-    is_generated: Cell<bool>,
 }
 
 impl HizCuller {
     pub fn new() -> Self {
-        Self { hiz: RefCell::new(Hiz::new(8, 8)), near: 0.0, positions: HashMap::new(), is_generated: Cell::new(false) }
+        Self { hiz: Hiz::new(8, 8), near: 0.0, positions: HashMap::new() }
     }
 }
 
 impl Culler for HizCuller {
     fn name(&self) -> String {
-        format!("z-buffer of all pixels ({:?})", self.hiz.borrow().level()).to_lowercase()
+        format!("z-buffer of all pixels ({:?})", self.hiz.level()).to_lowercase()
     }
 
     fn set_size(&mut self, width: u32, height: u32) -> Result<()> {
-        *self.hiz.get_mut() = Hiz::new(width, height);
+        self.hiz = Hiz::new(width, height);
         self.positions.clear();
         Ok(())
     }
@@ -48,26 +46,26 @@ impl Culler for HizCuller {
     }
 
     fn clear(&mut self) {
-        self.is_generated.set(false);
-        self.hiz.get_mut().clear();
+        self.hiz.clear();
     }
 
     fn draw(&mut self, mesh: &Mesh, model_to_clip: &Mat4) {
         // Made in the first frame, which is not timed. A mesh lives as long as its scene, for which the size is set anew.
         let made = || mesh.vertices().iter().map(|&[x, y, _, z]| [x, y, z, 1.0]).collect();
         let positions = self.positions.entry(mesh.vertices().as_ptr()).or_insert_with(made);
-        let hiz = self.hiz.get_mut();
+        let hiz = &mut self.hiz;
         hiz.set_near(self.near);
         hiz.transform(positions, model_to_clip);
         hiz.project(mesh.indices());
         hiz.raster();
     }
 
+    fn finish(&mut self) {
+        self.hiz.generate();
+    }
+
     fn hides(&self, [x_min, y_min, x_max, y_max]: [f32; 4], w: f32) -> bool {
-        if !self.is_generated.replace(true) {
-            self.hiz.borrow_mut().generate();
-        }
-        self.hiz.borrow().test_rect(x_min, y_min, x_max, y_max, w)
+        self.hiz.test_rect(x_min, y_min, x_max, y_max, w)
     }
 }
 

@@ -42,6 +42,7 @@ mod plots;
 mod raster;
 #[path = "../shared/rectangle.rs"]
 mod rectangle;
+mod scatter;
 #[path = "../demo/scene.rs"]
 #[allow(dead_code, reason = "the demo uses more of it")]
 mod scene;
@@ -61,7 +62,7 @@ mod town;
 mod truth;
 mod visibility;
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -72,7 +73,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use args::Args;
 use growth::culler::Culler;
 use image::Image;
-use plots::Baseline;
+use scatter::Baseline;
 use setting::{Extent, ORDERS, Order, RULES, SCREEN, Setting};
 use subject::Subject;
 use survey::Survey;
@@ -84,12 +85,16 @@ struct Findings {
     surveys: Vec<Survey>,
     /// For each of them.
     baselines: Vec<Vec<Baseline>>,
+    /// What follows the program's name on the command line.
+    arguments: String,
     settings: usize,
     repeats: u32,
     leaks: Vec<(Image, String)>,
     growth: Vec<String>,
     passes: Vec<(String, Vec<passes::Row>)>,
     sizes: Vec<sizes::Row>,
+    /// The screen that they are drawn on.
+    sizes_on: (u32, u32),
     libraries: Vec<String>,
     merging: Vec<merging::Row>,
 }
@@ -117,8 +122,17 @@ fn run(args: &Args) -> Result<()> {
     for file in &args.files {
         subjects.push(Subject::load(file)?);
     }
-    let found = measure_all(args, extent, &subjects)?;
-    fs::write(&args.out, page::write(&found)?).map_err(|e| format!("cannot write {}: {e}", args.out.display()))?;
+    let best = setting::best_isa() as i32;
+    let mut cullers: Vec<Box<dyn Culler>> = vec![Box::new(growth::ours::Ours::new(options::Rule::ThreeLayer, best)?)];
+    if let Some(path) = &args.other {
+        cullers.push(Box::new(growth::other::Other::load(path, best)?));
+    }
+    cullers.push(Box::new(baseline::HizCuller::new()));
+    // Before minutes of measuring, not after.
+    let complain = |e| format!("cannot write {}: {e}", args.out.display());
+    let mut page = File::create(&args.out).map_err(complain)?;
+    let found = measure_all(args, extent, &subjects, cullers)?;
+    page.write_all(page::write(&found)?.as_bytes()).map_err(complain)?;
     say(&found.summary());
     say(&format!("\nwritten to {}", args.out.display()));
     match (found.falsely(), found.other_bits()) {
@@ -129,7 +143,12 @@ fn run(args: &Args) -> Result<()> {
     }
 }
 
-fn measure_all(args: &Args, extent: Extent, subjects: &[Subject]) -> Result<Findings> {
+fn measure_all(
+    args: &Args,
+    extent: Extent,
+    subjects: &[Subject],
+    mut cullers: Vec<Box<dyn Culler>>,
+) -> Result<Findings> {
     let settings = setting::settings(extent);
     let repeats = args.repeats;
     let is_short = extent == Extent::Short;
@@ -145,12 +164,14 @@ fn measure_all(args: &Args, extent: Extent, subjects: &[Subject]) -> Result<Find
     let mut found = Findings {
         surveys: Vec::new(),
         baselines: Vec::new(),
+        arguments: args.shown(),
         settings: settings.len(),
         repeats,
         leaks: Vec::new(),
         growth: Vec::new(),
         passes: Vec::new(),
         sizes: Vec::new(),
+        sizes_on: if is_short { (640, 360) } else { SCREEN },
         libraries: Vec::new(),
         merging: Vec::new(),
     };
@@ -165,12 +186,6 @@ fn measure_all(args: &Args, extent: Extent, subjects: &[Subject]) -> Result<Find
     }
 
     bar.set_message("cost");
-    let best = setting::best_isa() as i32;
-    let mut cullers: Vec<Box<dyn Culler>> = vec![Box::new(growth::ours::Ours::new(options::Rule::ThreeLayer, best)?)];
-    if let Some(path) = &args.other {
-        cullers.push(Box::new(growth::other::Other::load(path, best)?));
-    }
-    cullers.push(Box::new(baseline::HizCuller::new()));
     found.libraries = cullers.iter().map(|c| c.name()).collect();
     let mut rows = Vec::new();
     for job in jobs {
@@ -181,8 +196,7 @@ fn measure_all(args: &Args, extent: Extent, subjects: &[Subject]) -> Result<Find
     }
     found.growth = growth_plots(&found.libraries, &rows)?;
     bar.set_message("sizes of triangles");
-    let size = if is_short { (640, 360) } else { SCREEN };
-    found.sizes = sizes::study(&mut cullers, size, limit, || bar.inc(1))?;
+    found.sizes = sizes::study(&mut cullers, found.sizes_on, limit, || bar.inc(1))?;
     bar.set_message("merging");
     found.merging = merging::study(if is_short { 1 } else { 3 * repeats }, || bar.inc(1))?;
     bar.finish_and_clear();

@@ -8,7 +8,7 @@ use crate::Result;
 use crate::image::Image;
 use crate::machine::{day, machine};
 use crate::tables::{self, Table};
-use crate::{Findings, plots};
+use crate::{Findings, plots, scatter};
 
 const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}
 h1{font-size:1.7em}h2{margin-top:2em;border-bottom:1px solid #ccc}
@@ -43,7 +43,7 @@ fn plot(svg: String) -> Markup {
 pub fn write(found: &Findings) -> Result<String> {
     let mut scatters = Vec::new();
     for (survey, baselines) in found.surveys.iter().zip(&found.baselines) {
-        scatters.push(plot(plots::speed_against_error(survey, baselines)?));
+        scatters.push(plot(scatter::speed_against_error(survey, baselines)?));
     }
     let mut pictures = Vec::new();
     for (image, caption) in &found.leaks {
@@ -66,7 +66,7 @@ pub fn write(found: &Findings) -> Result<String> {
                 h1 { "Masked occlusion culling: speed against error" }
                 p { (machine()) br; (day()) ", version " (env!("CARGO_PKG_VERSION")) ", "
                     (found.settings) " settings a scene, medians of " (found.repeats) " repeats" }
-                p { "Made by " code { "cargo run --release --example report" } ". Times of a machine that does other things, too, "
+                p { "Made by " code { "cargo run --release --example report" (found.arguments) } ". Times of a machine that does other things, too, "
                     "differ from run to run: compare those of a page with each other, not with those of another page." }
 
                 h2 { "What is measured" }
@@ -75,7 +75,7 @@ pub fn write(found: &Findings) -> Result<String> {
                     "1920x1080, which shares no code with the library, says what is hidden: objects of which every pixel lies behind an "
                     "occluder, and boxes whose rectangle lies behind it. Shares are the parts of those that are culled. "
                     "\"Exact\" is what that z-buffer itself culls by rectangles; \"8x4 ceiling\" what it culls with only the least "
-                    "depth of each 8x4 pixels. \"Falsely\" counts what is culled and shows at the buffer's own resolution, which must be 0; "
+                    "depth of each 8x4 pixels, which layers may exceed. \"Falsely\" counts what is culled and shows at the buffer's own resolution, which must be 0; "
                     "\"on screen\" objects that show on the screen when the buffer has fewer pixels than it: a small buffer cannot know them. "
                     "\"Leaking\" are pixels that claim less than half of the true 1/w." }
                 p { "In all of it: " b { (found.falsely()) } " falsely culled; " (found.same_bits()) " buffers compared between instruction "
@@ -88,7 +88,7 @@ pub fn write(found: &Findings) -> Result<String> {
                     "over that of the quick rule in the same order. One buffer, one thread." }
                 (table(&tables::rules(surveys)))
                 h3 { "What else can be set" }
-                p { "Means over scenes and orders: time of drawing over that of the plain setting (1920x1080, one buffer, one thread, the best "
+                p { "Means over scenes and orders: time of drawing over that of the plain setting (the largest resolution measured, one buffer, one thread, the best "
                     "instruction set) with the same rule and order, and how many percent of the hidden objects and boxes more or less are culled. "
                     "Where several buffers are merged, objects are dealt to them by how wide a range of depth they reach over." }
                 @for t in tables::effects(surveys) { (table(&t)) }
@@ -102,19 +102,20 @@ pub fn write(found: &Findings) -> Result<String> {
                 @for picture in &pictures { (picture) }
 
                 h2 { "How cost grows" }
-                p { "Time of a frame against triangles, pixels, and sheets one behind the other." }
+                p { "Time of a frame against triangles, pixels, and sheets one behind the other; the z-buffer's with its reduction." }
                 @for svg in &found.growth { (plot(svg.clone())) }
 
                 h2 { "The passes of a frame" }
                 p { "As table 1 of the HPG 2016 paper, for the first view of each scene, 1920x1080, the nearest first. The z-buffer of all pixels "
-                    "is written with the same vector instructions as the library, draws exact coverage, and reduces to the farthest depth of "
+                    "uses AVX-512, or AVX2 with fused multiply-add (below these it is not written with vectors), draws exact coverage, and reduces to the farthest depth of "
                     "each 8x8 pixels. To have its passes apart the masked buffer is drawn by way of a list; \"in one go\" is the frame as an engine "
                     "draws it. \"Culled\" counts rectangles of objects and boxes." }
                 @for (name, rows) in &found.passes { h3 { (name) } (table(&tables::passes(rows))) }
 
                 h2 { "Cost by the size of triangles" }
                 p { "As figure 11 of that paper: 32,768 right-angled isosceles triangles (fewer of the largest), anywhere on a screen of "
-                    "1920x1080, turned anyhow, back to front so that none is hidden; everything from transformation on, and the clear." }
+                    (found.sizes_on.0) "x" (found.sizes_on.1) ", turned anyhow, back to front so that none is hidden; the clear, everything from transformation on, and the z-buffer's "
+                    "reduction. The masked buffer is drawn into through its C functions, which trust their indices; the z-buffer looks at them." }
                 (per_triangle) (per_pixel)
                 (table(&tables::sizes(&found.sizes, &found.libraries)))
 

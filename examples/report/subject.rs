@@ -67,6 +67,9 @@ impl Subject {
 
     /// The scene in a file: large meshes are split, as the demo does it.
     pub fn load(path: &Path) -> Result<Self> {
+        if path.extension().is_some_and(|e| e == "mocrec") {
+            return Err(format!("{}: a recording has no objects to test; `replay` plays it", path.display()).into());
+        }
         let scene = load::load(path)?;
         let piece = split::piece_size(&scene);
         let scene = split::split(scene, piece);

@@ -170,8 +170,14 @@ pub fn effects(surveys: &[Survey]) -> Vec<Table> {
             (s.threads == 1 && s.buffers == 1 && s.size == SCREEN).then(|| (s.isa as i32, isa_name(s.isa)))
         }),
         effect(surveys, "threads", move |s| {
-            let how = if s.buffers == 1 { "a pool".into() } else { format!("{} buffers merged", s.buffers) };
-            let has_both = s.isa == best && s.size == SCREEN && s.buffers <= 2 && s.order != Order::Far;
+            let how = match (s.buffers, s.threads) {
+                (1, 1) => "no pool".into(),
+                (1, _) => "a pool".into(),
+                (buffers, _) => format!("{buffers} buffers merged"),
+            };
+            // A buffer has one thread.
+            let is_sound = s.buffers == 1 || s.threads as usize <= s.buffers;
+            let has_both = is_sound && s.isa == best && s.size == SCREEN && s.buffers <= 2 && s.order != Order::Far;
             has_both.then(|| ((s.buffers, s.threads), format!("{}, {how}", s.threads)))
         }),
     ];

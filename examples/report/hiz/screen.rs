@@ -5,8 +5,7 @@ use super::lanes::Lanes;
 /// The screen of a buffer.
 #[derive(Clone, Copy)]
 pub struct Screen {
-    /// In pixels.
-    /// Vertices lie on a grid of `1 >> bits` pixel.
+    /// Vertices lie on a grid of 1/2^bits pixel.
     pub bits: u32,
     /// Half the size, in steps of the grid.
     pub half: [f32; 2],

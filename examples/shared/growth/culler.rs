@@ -16,6 +16,8 @@ pub trait Culler {
     fn set_near(&mut self, near: f32);
     fn clear(&mut self);
     fn draw(&mut self, mesh: &Mesh, model_to_clip: &Mat4);
+    /// Comes after all meshes of a frame, before anything is asked.
+    fn finish(&mut self) {}
     /// Is a rectangle (least x and y, greatest x and y, from -1 to 1) at distance `w` certainly hidden?
     fn hides(&self, rectangle: [f32; 4], w: f32) -> bool;
 }
@@ -26,6 +28,7 @@ pub fn frame(culler: &mut dyn Culler, scene: &Scene) {
     for mesh in &scene.meshes {
         culler.draw(mesh, &scene.clip_from_world);
     }
+    culler.finish();
 }
 
 const COLUMNS: u16 = 40;
