@@ -131,7 +131,7 @@ fn depths_of_floors_under_the_eye() {
                     continue;
                 }
                 // Snapping moves the plane by half a subpixel.
-                let least = exact.least_around(column, row) - exact.slope() / 256.0;
+                let least = exact.block_depth(column, row) - exact.slope() / 256.0;
                 if f64::from(stored) < least * (1.0 - 1e-4) {
                     let name = name(moc);
                     return Err(format!(

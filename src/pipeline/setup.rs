@@ -20,7 +20,9 @@
 //! here are farther apart than `2 s`. The terms of the value at the anchor sum to at most `Z + 16 Z s^2 / area`, which is
 //! below `24 Z s^2 / area`. The quotient comes from f32 by one step of Newton's iteration, off by `2^-46`, and the roundings
 //! in f64 are far smaller: together less than `2^-40 Z s^2 / area`. Beyond 2^25 the area is not exact, but off by at
-//! most 2, which adds less than `4 / area` of those terms. What follows is of the screen's size, at most
+//! most 2, which adds less than `4 / area` of those terms. For a computed area of 3 and a true one of 1 the terms themselves
+//! are off by a factor of 3, and it holds all the same: the real rise of a plane whose depths lie in `[0, Z]` is at most
+//! `8 Z s^2 / area`, and what is computed differs from it by no more than the error's share of that. What follows is of the screen's size, at most
 //! `a = |anchor| + |slope across| * box's width + |slope down| * box's height`: rounding the three, the corner, the
 //! margin and the walk to the sub-tile sum to at most `10 u a`, a vertex's depth adds one. The margin is `16 u a` and what
 //! was said of f64. On slivers it is large, and the clamp decides.

@@ -103,6 +103,8 @@ fn sheets() -> Measured {
     let mut subject = Subject::new(size, YAxis::Up);
     let mut oracle = Oracle::new(size.0, size.1);
     let mut measured = Measured::default();
+    // What was drawn before would hide a pixel that a sheet misses.
+    let mut alone = Subject::new(size, YAxis::Up);
     for (k, sheet) in sheets.into_iter().enumerate() {
         let mut grid = Grid::new(size, cells, |x, y| f32::from_bits(slanted(x, y).to_bits() + sheet));
         // Rows run up here: the grid's y as it is.
@@ -113,7 +115,10 @@ fn sheets() -> Measured {
         grid.indices = order.concat();
         subject.draw_mesh(&grid.vertices, &grid.indices);
         grid.triangles().for_each(|t| oracle.draw(&t));
-        measured.coverage(grid.triangles(), subject.depth(), &oracle);
+        alone.clear();
+        alone.draw_mesh(&grid.vertices, &grid.indices);
+        // Every sheet has the same outline, so that what all of them cover is what one does.
+        measured.coverage(grid.triangles(), alone.depth(), &oracle);
         if k % 10 == 9 {
             measured.depths(subject.depth(), &oracle);
             // What shows of this sheet alone is what is as near as all that was drawn.

@@ -26,6 +26,9 @@ pub struct Measured {
     /// Stored less exact depth at the pixel's centre, in units in the last place of the exact one: the greatest. Above
     /// zero is too near.
     pub nearer: f64,
+    /// Stored depth less the exact bound of its block of 8x4 pixels, in units in the last place of the bound: the greatest.
+    /// Above zero a point of the block between pixel centres may be farther than the buffer says.
+    pub over: f64,
     /// Exact bound less stored depth, in units in the last place of the bound: the greatest.
     pub behind: f64,
     /// The same as a part of the bound.
@@ -53,6 +56,7 @@ impl Default for Measured {
             off: 0.0,
             depths: 0,
             nearer: f64::NEG_INFINITY,
+            over: f64::NEG_INFINITY,
             behind: f64::NEG_INFINITY,
             part: f64::NEG_INFINITY,
             far_behind: 0,
@@ -116,6 +120,7 @@ impl Measured {
                     bound = (column / 8, block_bound(t, column, row));
                 }
                 self.depth(stored, depth_at_pixel(t, column, row));
+                self.over = self.over.max((f64::from(stored) - bound.1) / ulp(bound.1));
                 self.bound(stored, bound.1);
             }
         }
@@ -209,6 +214,7 @@ impl Measured {
         self.off = self.off.max(other.off);
         self.depths += other.depths;
         self.nearer = self.nearer.max(other.nearer);
+        self.over = self.over.max(other.over);
         self.behind = self.behind.max(other.behind);
         self.part = self.part.max(other.part);
         self.far_behind += other.far_behind;
@@ -237,6 +243,7 @@ impl Measured {
     pub fn assert_safe(&self) -> &Self {
         assert!(self.depths > 500, "{self:?}");
         assert!(self.nearer <= 0.0, "stored too near: {self:?}");
+        assert!(self.over <= 0.0, "too near within a block of 8x4 pixels: {self:?}");
         assert_eq!(self.hidden, 0, "called hidden, but it shows: {self:?}");
         self
     }

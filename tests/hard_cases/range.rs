@@ -1,11 +1,12 @@
 //! Triangles whose w runs over twelve decades and more: a wall that passes by the camera, a sky box's face, a beam from
-//! the muzzle to the horizon. 1/w then changes by as much, and its gradient on thin triangles by more than f32 holds.
+//! the muzzle to the horizon. 1/w then changes by as much, and its gradient on thin triangles by far more: docs/accuracy.md says why f32 holds it.
 
 use masked_occlusion_culling::YAxis;
 
 use crate::cases::Case;
 use crate::cases::measured::Measured;
 use crate::cases::subject::Subject;
+use crate::oracle::bounds::power;
 use crate::oracle::homogeneous::Homogeneous;
 use crate::oracle::snap::snapped;
 use crate::oracle::{Oracle, Triangle, UNIT, Vertex, area};
@@ -103,7 +104,6 @@ fn steep() -> Measured {
     let oracle = Oracle::new(SIZE.0, SIZE.1);
     let mut measured = Measured::default();
     let mut random = fastrand::Rng::with_seed(23);
-    let power = |k: i32| f64::from_bits(((1023 + i64::from(k)) as u64) << 52);
     for k in 0..900 {
         // 1/w from 2^-40 to 2^30: the nearest and the farthest that are drawn, and one between or at either end.
         let mut exponents = [30, -40, [30, 29, 0, -30, -40][k % 5]];

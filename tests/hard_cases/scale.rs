@@ -9,6 +9,7 @@ use masked_occlusion_culling::{DrawOptions, Vertices, YAxis};
 use crate::cases::Case;
 use crate::cases::measured::Measured;
 use crate::cases::subject::Subject;
+use crate::oracle::bounds::power;
 use crate::oracle::homogeneous::Homogeneous;
 use crate::support::both_sides;
 
@@ -76,11 +77,6 @@ fn measure(subject: &mut Subject, measured: &mut Measured, matrix: &Mat4, triang
         all.extend_from_slice(subject.depth());
     }
     all
-}
-
-/// 2^k.
-fn power(k: i32) -> f64 {
-    f64::from_bits(((1023 + i64::from(k)) as u64) << 52)
 }
 
 fn powers() -> Measured {

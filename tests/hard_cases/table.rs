@@ -62,6 +62,7 @@ fn row(case: &Case, m: &Measured) -> String {
         count(m.wrong),
         pixels(m.off),
         ulps(m.nearer),
+        ulps(m.over),
         ulps(m.behind),
         percent(m.part),
         percent(m.behind_share()),
@@ -74,8 +75,8 @@ fn row(case: &Case, m: &Measured) -> String {
 
 fn table() -> String {
     let mut out = String::from(
-        "| case | triangles | pixels | covered | wrong | off, pixels | nearest, ulp | behind, ulp | behind, % | over 1% behind, % \
-         | given up | refused | falsely hidden |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        "| case | triangles | pixels | covered | wrong | off, pixels | nearest, ulp | over, ulp | behind, ulp | behind, % | over 1% behind, % \
+         | given up | refused | falsely hidden |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     all().for_each(|case| write!(out, "{}", row(case, case.measured())).expect("a string"));
     out

@@ -2,12 +2,17 @@
 
 use super::{Triangle, UNIT, Vertex, area};
 
+/// 2^k, made of its bits: exact on every machine.
+pub fn power(k: i32) -> f64 {
+    assert!((-1022..=1023).contains(&k), "2^{k} is not a normal number");
+    f64::from_bits(((1023 + i64::from(k)) as u64) << 52)
+}
+
 /// The distance of neighbouring f32 numbers at a positive `x`, which need not be one of them: 2^(e - 23) for
-/// 2^e <= x < 2^(e + 1). Powers of two, made of their bits.
+/// 2^e <= x < 2^(e + 1).
 pub fn ulp(x: f64) -> f64 {
     assert!(x > 0.0 && x.is_finite(), "{x} has no unit in the last place");
-    let exponent = ((x.to_bits() >> 52) as i64 - 1023).max(-126);
-    f64::from_bits(((exponent - 23 + 1023) as u64) << 52)
+    power(((x.to_bits() >> 52) as i32 - 1023).max(-126) - 23)
 }
 
 /// a * b without rounding, as a sum of two (Dekker 1971).

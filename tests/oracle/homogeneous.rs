@@ -54,13 +54,6 @@ impl Homogeneous {
         self.value(3, column as f64 + 0.5, row as f64 + 0.5)
     }
 
-    /// The least 1/w of the plane in the 8x4 pixels around a pixel.
-    pub fn least_around(&self, column: usize, row: usize) -> f64 {
-        let [c, dx, dy] = self.terms[3];
-        let (x, y) = ((column / 8 * 8) as f64, (row / 4 * 4) as f64);
-        c + dx * x + dy * y + (8.0 * dx).min(0.0) + (4.0 * dy).min(0.0)
-    }
-
     /// How much 1/w changes within a pixel in x and y.
     pub fn slope(&self) -> f64 {
         self.terms[3][1].abs() + self.terms[3][2].abs()

@@ -9,6 +9,7 @@ use masked_occlusion_culling::{
 };
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 
+use crate::oracle::bounds::block_bound;
 use crate::oracle::{Oracle, Triangle, UNIT, Vertex, depth_at_pixel, span, useful_depth};
 
 pub const RULES: [UpdateRule; 4] =
@@ -123,7 +124,7 @@ pub fn is_empty(depth: f32) -> bool {
 }
 
 /// Compares a buffer that holds one triangle with the exact answer: the same pixels, none nearer than the
-/// triangle, none uselessly far.
+/// triangle is anywhere in its block of 8x4 pixels, none uselessly far.
 pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), String> {
     let rows = oracle.rows(t);
     for (row, line) in depth.chunks_exact(oracle.width).enumerate() {
@@ -135,6 +136,7 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
         if let Some(column) = line[span.end..].iter().position(|d| !is_empty(*d)) {
             return Err(format!("covers ({}, {row}) falsely", span.end + column));
         }
+        let mut bound = (usize::MAX, 0.0);
         for column in span {
             let stored = f64::from(line[column]);
             if is_empty(line[column]) {
@@ -143,6 +145,12 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
             let exact = depth_at_pixel(t, column, row);
             if stored.is_nan() || stored > exact * (1.0 + 1e-15) {
                 return Err(format!("({column}, {row}) is too near: {stored:e}, exactly {exact:e}"));
+            }
+            if bound.0 != column / 8 {
+                bound = (column / 8, block_bound(t, column, row));
+            }
+            if stored > bound.1 {
+                return Err(format!("({column}, {row}) is too near for its block: {stored:e}, at most {:e}", bound.1));
             }
             let useful = useful_depth(t, column, row);
             if stored < useful {
