@@ -116,8 +116,21 @@ fn aimed(kind: Kind, mut t: Triangle, random: &mut fastrand::Rng) -> Triangle {
     let on_centre = |v: i64| v.div_euclid(UNIT) * UNIT + UNIT / 2;
     match kind {
         Kind::NearHorizontal | Kind::NearVertical | Kind::HorizontalEdge | Kind::VerticalEdge if random.bool() => {
+            let mut corners = t;
+            // The middle one of a thin triangle: its row or column of centres goes through the inside.
+            let at = match kind {
+                Kind::NearHorizontal => {
+                    corners.sort_by_key(|v| v.y);
+                    1
+                }
+                Kind::NearVertical => {
+                    corners.sort_by_key(|v| v.x);
+                    1
+                }
+                _ => random.usize(0..3),
+            };
+            let to = corners[at];
             // The whole of it, so that it stays as thin, and level or upright edges stay so.
-            let to = t[random.usize(0..3)];
             let (dx, dy) = (on_centre(to.x) - to.x, on_centre(to.y) - to.y);
             t.map(|v| Vertex { x: v.x + dx, y: v.y + dy, z: v.z })
         }
