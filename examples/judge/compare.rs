@@ -15,6 +15,8 @@ use crate::view::View;
 #[derive(Clone, Default)]
 pub struct Tally {
     pub triangles: u64,
+    /// Triangles of which the library covers a pixel at least.
+    pub covering: u64,
     pub pixels: u64,
     /// Pixels that the library covers.
     pub covered: u64,
@@ -55,6 +57,7 @@ pub fn compare(
             let tally = &mut tallies[*kind];
             tally.triangles += 1;
             tally.pixels += view.pixels() as u64;
+            tally.covering += u64::from(covered[i] > 0);
             tally.covered += covered[i];
             tally.ties += ties(t, view);
             if let Some(first) = differing[i].first {

@@ -8,7 +8,7 @@
 //! which drivers may differ, are kept out of it is said in `view.rs`, how many triangles share a draw and stay
 //! apart in `driver.rs`. `docs/judge.md` has what was found.
 //!
-//! The status is 1 when any pixel differs, and 2 when nothing could be compared.
+//! The status is 1 when any pixel differs, or else 2 when an API that was asked for could not be compared to the end.
 
 mod args;
 mod compare;
@@ -22,6 +22,7 @@ mod ties;
 #[path = "../../tests/support/triangles.rs"]
 #[allow(dead_code, reason = "the tests use more of it")]
 mod triangles;
+mod verdict;
 mod view;
 mod vulkan;
 
@@ -38,75 +39,80 @@ use driver::Driver;
 use kinds::Kind;
 use opengl::OpenGl;
 use oracle::UNIT;
+use verdict::{Outcome, verdict};
 use view::View;
 use vulkan::Vulkan;
 
 fn main() -> ExitCode {
-    match judge(&Args::parse()) {
-        Ok(0) => ExitCode::SUCCESS,
-        Ok(differences) => {
-            eprintln!("FAILED: {differences} pixels differ");
-            ExitCode::from(1)
-        }
-        Err(why) => {
-            eprintln!("nothing could be compared: {why}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// How many pixels differ.
-fn judge(args: &Args) -> Result<u64, Box<dyn Error>> {
+    let args = Args::parse();
     let device = args.device.as_deref();
-    let mut differences = 0;
+    let mut outcomes = Vec::new();
     if args.api != Api::Opengl {
-        differences += with(args, &mut Vulkan::open(device)?)?;
+        outcomes.push(judge("Vulkan", &args, || Vulkan::open(device)));
     }
     if args.api != Api::Vulkan {
-        differences += with(args, &mut OpenGl::open(device)?)?;
+        outcomes.push(judge("OpenGL", &args, || OpenGl::open(device)));
     }
-    Ok(differences)
+    let (lines, status) = verdict(&outcomes);
+    for line in lines {
+        eprintln!("{line}");
+    }
+    ExitCode::from(status)
 }
 
-/// Compares with one driver, and prints what was seen.
-fn with(args: &Args, driver: &mut dyn Driver) -> Result<u64, Box<dyn Error>> {
+/// Compares with one API's driver, if it opens, and prints what was seen.
+fn judge<D: Driver>(api: &'static str, args: &Args, open: impl FnOnce() -> Result<D, Box<dyn Error>>) -> Outcome {
+    let kinds = args.kinds();
+    let mut tallies = vec![Tally::default(); kinds.len()];
+    let failure = match open() {
+        Ok(mut driver) => with(args, &mut driver, &kinds, &mut tallies).err().map(|why| why.to_string()),
+        Err(why) => Some(format!("could not be opened: {why}")),
+    };
+    let triangles = tallies.iter().map(|t| t.triangles).sum();
+    // What was counted before a failure counts.
+    let differences = if triangles > 0 { print(&kinds, &tallies) } else { 0 };
+    println!();
+    Outcome { api, triangles, differences, failure }
+}
+
+/// Compares with one driver.
+fn with(args: &Args, driver: &mut dyn Driver, kinds: &[Kind], tallies: &mut [Tally]) -> Result<(), Box<dyn Error>> {
     let (api, axis) = driver.api();
     println!("{api}, rows {axis:?}: {}", driver.name());
     let bits = driver.subpixel_bits();
     if i64::from(bits) < i64::from(UNIT.ilog2()) {
         return Err(format!("{bits} bits of subpixels do not hold the grid of 1/256").into());
     }
-    let (kinds, sizes) = (args.kinds(), args.sizes());
+    let sizes = args.sizes();
     let bar = ProgressBar::new(sizes.iter().map(|s| s.1).sum()).with_style(ProgressStyle::with_template(
         "{bar:40} {human_pos} of {human_len} triangles, {elapsed}, {eta} left",
     )?);
-    let mut tallies = vec![Tally::default(); kinds.len()];
     let start = Instant::now();
     for (i, (size, count)) in sizes.into_iter().enumerate() {
         let view = View::new(size, driver.most_side())?;
         // Other triangles on every screen.
         let seed = args.seed.wrapping_mul(1 << 8).wrapping_add(i as u64);
-        compare(driver, view, (&kinds, seed, count), &mut tallies, &bar)?;
+        compare(driver, view, (kinds, seed, count), tallies, &bar)?;
     }
     bar.finish_and_clear();
-    let total = print(&kinds, &tallies);
-    println!("{bits} bits of subpixels, seed {}, {:.0} s\n", args.seed, start.elapsed().as_secs_f64());
-    Ok(total)
+    println!("{bits} bits of subpixels, seed {}, {:.0} s", args.seed, start.elapsed().as_secs_f64());
+    Ok(())
 }
 
 /// Prints the table, and says how many pixels differ.
 fn print(kinds: &[Kind], tallies: &[Tally]) -> u64 {
-    let heads = ["triangles", "pixels", "covered", "on an edge", "differences"];
+    let heads = ["triangles", "covering any", "pixels", "covered", "on an edge", "differences"];
     println!("| {:<15} | {} |", "kind", heads.map(|head| format!("{head:>13}")).join(" | "));
     println!("|{:-<17}|{}", "", "--------------:|".repeat(heads.len()));
     let line = |name: &str, t: &Tally| {
-        let figures = [t.triangles, t.pixels, t.covered, t.ties, t.differences];
+        let figures = [t.triangles, t.covering, t.pixels, t.covered, t.ties, t.differences];
         println!("| {name:<15} | {} |", figures.map(|n| format!("{n:>13}")).join(" | "));
     };
     let mut all = Tally::default();
     for (kind, tally) in kinds.iter().zip(tallies) {
         line(&kind.name(), tally);
         all.triangles += tally.triangles;
+        all.covering += tally.covering;
         all.pixels += tally.pixels;
         all.covered += tally.covered;
         all.ties += tally.ties;
