@@ -58,8 +58,8 @@ pub fn triangle_sizes(rows: &[sizes::Row], libraries: &[String], per_pixel: bool
             .x_desc("length of a leg in pixels")
             .y_desc(if per_pixel { "nanoseconds a pixel" } else { "nanoseconds a triangle" })
             .label_style(FONT)
-            .x_labels(20)
-            .y_labels(20)
+            .x_label_formatter(&|v| few(*v))
+            .y_label_formatter(&|v| few(*v))
             .light_line_style(BLACK.mix(0.06))
             .draw()?;
         for (i, library) in libraries.iter().enumerate() {
@@ -82,4 +82,20 @@ pub fn triangle_sizes(rows: &[sizes::Row], libraries: &[String], per_pixel: bool
             .draw()?;
         Ok(())
     })
+}
+
+/// A number at a logarithmic axis: 1, 2, 5, 10, ...; nothing at those between, which would run into each other.
+fn few(value: f64) -> String {
+    let leading = (value / 10f64.powf((value * 1.0001).log10().floor())).round();
+    if [1.0, 2.0, 5.0].contains(&leading) { format!("{}", (value * 1e4).round() / 1e4) } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_numbers_stand_at_an_axis() {
+        assert_eq!([0.1, 0.3, 1.0, 2.0, 3.0, 50.0, 90.0, 1000.0].map(few), ["0.1", "", "1", "2", "", "50", "", "1000"]);
+    }
 }

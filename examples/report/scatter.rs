@@ -67,8 +67,9 @@ pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<St
     let lines = [(survey.exact[0], BLACK), (survey.ceiling[0], GREY)].map(|(share, c)| (share.percent(), c));
     let times = || dots.iter().map(|d| d.at.0);
     let across = times().fold(f64::MAX, f64::min) / 1.3..times().fold(0.0, f64::max) * 1.3;
-    let least = dots.iter().map(|d| d.at.1).chain(lines.map(|l| l.0)).fold(100.0, f64::min);
-    let up = (least - 4.0).max(-1.0)..102.0;
+    let shares = || dots.iter().map(|d| d.at.1).chain(lines.map(|l| l.0));
+    let (least, most) = (shares().fold(100.0, f64::min), shares().fold(0.0, f64::max));
+    let up = (least - 4.0).max(-1.0)..(most + 4.0).min(102.0);
     let title = format!("{}: {} objects, {} triangles", survey.name, survey.objects, survey.triangles);
     svg(|root| {
         let (left, right) = root.split_horizontally(SIZE.0 - LEGEND);
