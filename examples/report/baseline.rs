@@ -6,13 +6,13 @@ use std::time::Instant;
 use glam::Mat4;
 
 use crate::Result;
-use crate::frame::occluders;
+use crate::frame::{Occluder, occluders};
 use crate::growth::culler::Culler;
 use crate::growth::mesh::Mesh;
 use crate::hiz::Hiz;
 use crate::scatter::Baseline;
 use crate::setting::{ORDERS, SCREEN};
-use crate::subject::{Rectangle, Subject};
+use crate::subject::{Rectangle, Subject, View};
 use crate::survey::{Share, median};
 use crate::visibility::Visibility;
 
@@ -69,6 +69,16 @@ impl Culler for HizCuller {
     }
 }
 
+/// Draws all occluders, one after the other.
+pub fn draw(hiz: &mut Hiz, occluders: &[Occluder], view: &View) {
+    for o in occluders {
+        hiz.winding = o.winding();
+        hiz.transform(o.vertices(), &view.clip);
+        hiz.project(&o.indices);
+        hiz.raster();
+    }
+}
+
 /// A scene's hidden objects with this buffer, on the screen, for each order.
 pub fn survey(subject: &Subject, repeats: u32, mut tick: impl FnMut()) -> Result<Vec<Baseline>> {
     let mut found: Vec<(f64, Share)> = vec![(0.0, Share::default()); ORDERS.len()];
@@ -84,12 +94,7 @@ pub fn survey(subject: &Subject, repeats: u32, mut tick: impl FnMut()) -> Result
             for turn in 0..=repeats {
                 let start = Instant::now();
                 hiz.clear();
-                for o in &occluders {
-                    hiz.winding = o.winding();
-                    hiz.transform(o.vertices(), &view.clip);
-                    hiz.project(&o.indices);
-                    hiz.raster();
-                }
+                draw(&mut hiz, &occluders, view);
                 hiz.generate();
                 hidden.clear();
                 hidden.extend(all.iter().map(|r| r.is_some_and(|[a, b, c, d, w]| hiz.test_rect(a, b, c, d, w))));
@@ -99,8 +104,7 @@ pub fn survey(subject: &Subject, repeats: u32, mut tick: impl FnMut()) -> Result
             }
             found.0 += median(&mut times);
             let share = Share::of(&truth.hidden_objects, hidden[..objects.len()].iter().copied());
-            found.1.part += share.part;
-            found.1.whole += share.whole;
+            found.1.add(share);
             tick();
         }
     }

@@ -9,6 +9,7 @@ use std::time::Instant;
 use masked_occlusion_culling::{DrawOptions, MaskedOcclusionCulling, Settings, TriList, Vertices, transform_vertices};
 
 use crate::Result;
+use crate::baseline;
 use crate::frame::{LAYOUT, Occluder, occluders};
 use crate::hiz::Hiz;
 use crate::options::Rule;
@@ -158,12 +159,7 @@ impl Way {
         match &mut self.kind {
             Kind::Hiz(hiz) => {
                 hiz.clear();
-                for o in occluders {
-                    hiz.winding = o.winding();
-                    hiz.transform(o.vertices(), &view.clip);
-                    hiz.project(&o.indices);
-                    hiz.raster();
-                }
+                baseline::draw(hiz, occluders, view);
                 hiz.generate();
             }
             Kind::Masked(moc) => {

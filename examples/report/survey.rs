@@ -30,7 +30,7 @@ impl Share {
         Self { part: found.iter().filter(|f| **f).count(), whole: found.len() }
     }
 
-    fn add(&mut self, other: Self) {
+    pub fn add(&mut self, other: Self) {
         self.part += other.part;
         self.whole += other.whole;
     }
@@ -103,7 +103,10 @@ pub fn survey(subject: &Subject, settings: &[Setting], repeats: u32, mut tick: i
         let mut bits: HashMap<Setting, u64> = HashMap::new();
         for point in &mut survey.points {
             let setting = point.setting;
-            let own = own.entry(setting.size).or_insert_with(|| truth(setting.size));
+            let own = match setting.size {
+                SCREEN => &screen,
+                size => own.entry(size).or_insert_with(|| truth(size)),
+            };
             let mut frames = Frames::new(&setting, of_order(setting.order), view.near)?;
             let (mut draws, mut queries, mut hidden) = (Vec::new(), Vec::new(), Vec::new());
             // The first frame touches memory that the system has not given yet: it is not counted.

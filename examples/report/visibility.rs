@@ -56,7 +56,7 @@ impl Visibility {
         let pixels = size.0 * size.1;
         let View { clip, near } = view;
         let mut exact = ZBuffer::new(size.0, size.1);
-        let mut grown = ZBuffer { grow: GROWN, ..ZBuffer::new(size.0, size.1) };
+        let mut grown = ZBuffer::new(size.0, size.1);
         let mut two = TwoNearest { nearest: vec![(0.0, u32::MAX); pixels], second: vec![0.0; pixels] };
         let objects: Vec<(usize, &Object)> =
             subject.objects.iter().enumerate().filter(|(_, o)| in_view(o.lo, o.hi, clip)).collect();
