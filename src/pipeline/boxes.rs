@@ -1,7 +1,7 @@
 //! Bounding boxes of a vector of triangles, and which of them the buffer's least depths hide.
 //!
 //! A box of one or two columns and rows of tiles is compared with the least depths of its four corners' tiles, which are
-//! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same four
+//! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same
 //! gathers. Without areas half of a castle's triangles that got edges had no open tile.
 
 use super::setup::{Purpose, VERTEX_MARGIN};
@@ -113,12 +113,23 @@ impl<S: Simd> Boxes<S> {
         let row = |y: S::I| s.add_i(first, s.round(s.mul(s.to_f(y), pitch)));
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
-        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile.
-        let at = |row: S::I, x: S::I| unsafe {
-            let index = s.select_i(few, s.add_i(row, x), any);
-            if RACING { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
+        let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
+        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile. After
+        // the last tile and the last area there is room; beside a rectangle, another thread may be writing.
+        let least = unsafe {
+            let one = |row: S::I, x: S::I| {
+                let index = at(row, x);
+                if RACING { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
+            };
+            if RACING || clip != buffer.all_tiles() {
+                s.min(s.min(one(top, left), one(top, right)), s.min(one(bottom, left), one(bottom, right)))
+            } else {
+                let [top, beside_top] = s.gather_pairs(buffer.least(), at(top, left));
+                let [bottom, beside_bottom] = s.gather_pairs(buffer.least(), at(bottom, left));
+                let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
+                s.select(s.eq_i(left, right), least, s.min(least, beside))
+            }
         };
-        let least = s.min(s.min(at(top, left), at(top, right)), s.min(at(bottom, left), at(bottom, right)));
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
         s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))
     }

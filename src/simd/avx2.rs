@@ -124,6 +124,20 @@ impl Simd for Avx2 {
         unsafe { _mm256_i32gather_ps::<4>(p, index) }
     }
     #[inline(always)]
+    unsafe fn gather_pairs(self, p: *const f32, index: __m256i) -> [__m256; 2] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            // What a gather costs is its number of lanes.
+            let low = _mm256_castpd_ps(_mm256_i32gather_pd::<4>(p.cast(), _mm256_castsi256_si128(index)));
+            let high = _mm256_castpd_ps(_mm256_i32gather_pd::<4>(p.cast(), _mm256_extracti128_si256::<1>(index)));
+            // Pairs 0, 1, 4, 5 and 2, 3, 6, 7 in the halves of a register.
+            let order = |x: __m256| _mm256_castpd_ps(_mm256_permute4x64_pd::<0b11_01_10_00>(_mm256_castps_pd(x)));
+            let first = _mm256_shuffle_ps::<0b10_00_10_00>(low, high);
+            let second = _mm256_shuffle_ps::<0b11_01_11_01>(low, high);
+            [order(first), order(second)]
+        }
+    }
+    #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [__m256i; 3] {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -112,6 +112,18 @@ impl Simd for Avx512 {
         unsafe { _mm512_i32gather_ps::<4>(index, p) }
     }
     #[inline(always)]
+    unsafe fn gather_pairs(self, p: *const f32, index: __m512i) -> [__m512; 2] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            // What a gather costs is its number of lanes.
+            let low = _mm512_castpd_ps(_mm512_i32gather_pd::<4>(_mm512_castsi512_si256(index), p.cast()));
+            let high = _mm512_castpd_ps(_mm512_i32gather_pd::<4>(_mm512_extracti32x8_epi32::<1>(index), p.cast()));
+            let first = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+            let second = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+            [_mm512_permutex2var_ps(low, first, high), _mm512_permutex2var_ps(low, second, high)]
+        }
+    }
+    #[inline(always)]
     unsafe fn lookup(self, table: *const f32, index: __m512i) -> __m512 {
         // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table)) }

@@ -78,6 +78,14 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// Each of them can be read.
     unsafe fn gather(self, p: *const f32, index: Self::I) -> Self::F;
+    /// `p[index]` and `p[index + 1]`.
+    /// # Safety
+    /// As [`Self::gather`], of both.
+    #[inline(always)]
+    unsafe fn gather_pairs(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
+        // SAFETY: the caller's contract.
+        unsafe { [self.gather(p, index), self.gather(p.add(1), index)] }
+    }
     /// `table[index]`. Indices are below `LANES`.
     /// # Safety
     /// `table` can be read for `LANES` floats.

@@ -119,6 +119,17 @@ impl Simd for Neon {
         }
     }
     #[inline(always)]
+    unsafe fn gather_pairs(self, p: *const f32, index: int32x4_t) -> [float32x4_t; 2] {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let mut k = [0u32; 4];
+            vst1q_s32(k.as_mut_ptr().cast(), index);
+            let at = |k: u32| vld1_f32(p.add(k as usize));
+            let (low, high) = (vcombine_f32(at(k[0]), at(k[1])), vcombine_f32(at(k[2]), at(k[3])));
+            [vuzp1q_f32(low, high), vuzp2q_f32(low, high)]
+        }
+    }
+    #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [int32x4_t; 3] {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -122,6 +122,12 @@ impl<S: Simd> Simd for Pair<S> {
         unsafe { [self.0.gather(p, index[0]), self.0.gather(p, index[1])] }
     }
     #[inline(always)]
+    unsafe fn gather_pairs(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
+        // SAFETY: the caller's contract, half by half.
+        let (a, b) = unsafe { (self.0.gather_pairs(p, index[0]), self.0.gather_pairs(p, index[1])) };
+        [[a[0], b[0]], [a[1], b[1]]]
+    }
+    #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [Self::I; 3] {
         // SAFETY: the caller's contract, half by half.
         let (a, b) = unsafe { (self.0.load_triangles(p), self.0.load_triangles(p.add(3 * S::LANES))) };

@@ -58,6 +58,17 @@ macro_rules! shared {
             unsafe { [_mm_set1_pd(x); 2] }
         }
         #[inline(always)]
+        unsafe fn gather_pairs(self, p: *const f32, index: __m128i) -> [__m128; 2] {
+            // SAFETY: the token, and the caller's contract.
+            unsafe {
+                let at = |k: i64| _mm_loadl_epi64(p.add(k as u32 as usize).cast());
+                let two = |k: i64| _mm_castsi128_ps(_mm_unpacklo_epi64(at(k), at(k >> 32)));
+                let low = two(_mm_cvtsi128_si64(index));
+                let high = two(_mm_cvtsi128_si64(_mm_unpackhi_epi64(index, index)));
+                [_mm_shuffle_ps::<0b10_00_10_00>(low, high), _mm_shuffle_ps::<0b11_01_11_01>(low, high)]
+            }
+        }
+        #[inline(always)]
         fn iota(self) -> __m128i {
             // SAFETY: the token proves the instruction set.
             unsafe { _mm_setr_epi32(0, 1, 2, 3) }
