@@ -65,7 +65,10 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let strip = strips.opened(k);
             let (lane, _) = strips.place(strip);
             // SAFETY: strips are fewer than there is room for; setup stored what it found of the lane.
-            unsafe { write_rows(t, batch, lane, strips.rows(strip), rows.get_unchecked_mut(strip).as_mut_ptr()) };
+            unsafe {
+                let rows = rows.get_unchecked_mut(strip).as_mut_ptr();
+                write_rows::<T, S>(t, batch, lane, strips.rows(strip), rows);
+            }
         }
         for k in 0..open.tiles {
             if k + AHEAD < open.tiles {
@@ -123,7 +126,7 @@ fn coverage<T: Simd>(t: T, left: T::I, right: T::I, x: u32) -> T::I {
 /// # Safety
 /// Setup stored all of the lane; `to` can be written.
 #[inline(always)]
-unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, (top, sub_row): (f32, i32), to: *mut Rows) {
+unsafe fn write_rows<T: Simd, S: TileStep<T>>(t: T, batch: &Batch, lane: usize, (top, sub_row): (f32, i32), to: *mut Rows) {
     // SAFETY: the caller's contract.
     let of_d = |field: &Lanes<f64>| t.d(unsafe { field.get(lane) });
     // SAFETY: the caller's contract.
@@ -132,11 +135,15 @@ unsafe fn write_rows<T: Simd>(t: T, batch: &Batch, lane: usize, (top, sub_row): 
     let of_i = |field: &Lanes<u32>| t.i(unsafe { field.get(lane) } as i32);
     let rows = t.add(t.f(top), t.to_f(t.iota()));
     let row = t.to_d(rows);
-    let left = t.add_d(of_d(&batch.left), t.mul_d(of_d(&batch.left_slope), row));
-    let right = t.add_d(of_d(&batch.right), t.mul_d(of_d(&batch.right_slope), row));
-    let middle = t.mul_d(of_d(&batch.middle_slope), row);
-    let left = t.d_to_i(t.max_d(left, t.add_d(of_d(&batch.middle_left), middle)));
-    let right = t.d_to_i(t.min_d(right, t.add_d(of_d(&batch.middle_right), middle)));
+    let event = |constant: &Lanes<f64>, slope: &Lanes<f64>| {
+        let (constant, slope) = (of_d(constant), of_d(slope));
+        // A draw's events are exact however it is rounded; a query's have to come to the same on all instruction sets.
+        if S::DRAWS { t.mul_add_d(slope, row, constant) } else { t.add_d(constant, t.mul_d(slope, row)) }
+    };
+    let left = event(&batch.left, &batch.left_slope);
+    let right = event(&batch.right, &batch.right_slope);
+    let left = t.d_to_i(t.max_d(left, event(&batch.middle_left, &batch.middle_slope)));
+    let right = t.d_to_i(t.min_d(right, event(&batch.middle_right, &batch.middle_slope)));
     // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal. In rows outside
     // of the box they may be anything, and what does not fit in an integer, too.
     let (column0, column1) = (of_i(&batch.column0), of_i(&batch.column1));

@@ -9,14 +9,14 @@ pub(super) struct Avx2(());
 
 /// # Safety
 /// The processor has AVX2, BMI1, BMI2, LZCNT and POPCNT.
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()))
 }
 
 /// # Safety
 /// As [`enter`].
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 #[inline(never)]
 unsafe fn apart<J: Apart<Avx2>>(s: Avx2, job: J) -> J::Output {
     job.run(s)
@@ -494,6 +494,11 @@ impl Simd for Avx2 {
     fn mul_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
         // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])] }
+    }
+    #[inline(always)]
+    fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [__m256d; 2] {
+        // SAFETY: the token proves the instruction set.
+        unsafe { [_mm256_fmadd_pd(a[0], b[0], c[0]), _mm256_fmadd_pd(a[1], b[1], c[1])] }
     }
     #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {

@@ -9,14 +9,14 @@ pub(super) struct Avx512(());
 
 /// # Safety
 /// The processor has AVX-512 F, BW, DQ and VL, BMI1, BMI2, LZCNT and POPCNT.
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx512(()))
 }
 
 /// # Safety
 /// As [`enter`].
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 #[inline(never)]
 unsafe fn apart<S, J: Apart<S>>(s: S, job: J) -> J::Output {
     job.run(s)
@@ -493,6 +493,11 @@ impl Simd for Avx512 {
     fn mul_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
         // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_mul_pd(a[0], b[0]), _mm512_mul_pd(a[1], b[1])] }
+    }
+    #[inline(always)]
+    fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [__m512d; 2] {
+        // SAFETY: the token proves the instruction set.
+        unsafe { [_mm512_fmadd_pd(a[0], b[0], c[0]), _mm512_fmadd_pd(a[1], b[1], c[1])] }
     }
     #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {

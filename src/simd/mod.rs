@@ -8,7 +8,7 @@
 //!
 //! Every operation gives the same bits everywhere. Where instruction sets differ by nature, this layer
 //! fixes one meaning: `min` and `max` return their second operand when either is NaN (as x86 does),
-//! division is the IEEE one, nothing is fused, and rounding to integers is to nearest even.
+//! division is the IEEE one, nothing is fused (but for `mul_add_d`), and rounding to integers is to nearest even.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -240,6 +240,11 @@ pub(crate) trait Simd: Copy {
     fn add_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn sub_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn mul_d(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a * b + c`, rounded once or twice as the instruction set likes: for what is shown to come to the same.
+    #[inline(always)]
+    fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> Self::D {
+        self.add_d(self.mul_d(a, b), c)
+    }
     fn div_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn min_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn max_d(self, a: Self::D, b: Self::D) -> Self::D;
@@ -308,6 +313,7 @@ pub(crate) fn available() -> &'static [Implementation] {
         // Every processor with AVX2 has these, but a virtual machine may hide them.
         let avx2 = sse41
             && is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
             && is_x86_feature_detected!("bmi1")
             && is_x86_feature_detected!("bmi2")
             && is_x86_feature_detected!("lzcnt")

@@ -375,6 +375,11 @@ impl Simd for Neon {
         unsafe { [vmulq_f64(a[0], b[0]), vmulq_f64(a[1], b[1])] }
     }
     #[inline(always)]
+    fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [float64x2_t; 2] {
+        // SAFETY: the token proves the instruction set.
+        unsafe { [vfmaq_f64(c[0], a[0], b[0]), vfmaq_f64(c[1], a[1], b[1])] }
+    }
+    #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
         // SAFETY: the token proves the instruction set.
         unsafe { [vdivq_f64(a[0], b[0]), vdivq_f64(a[1], b[1])] }

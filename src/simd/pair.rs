@@ -188,6 +188,7 @@ impl<S: Simd> Simd for Pair<S> {
         add_d(a: D, b: D) -> D;
         sub_d(a: D, b: D) -> D;
         mul_d(a: D, b: D) -> D;
+        mul_add_d(a: D, b: D, c: D) -> D;
         div_d(a: D, b: D) -> D;
         min_d(a: D, b: D) -> D;
         max_d(a: D, b: D) -> D;
