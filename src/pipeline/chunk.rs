@@ -48,7 +48,41 @@ pub(super) enum Numbering {
     Local { first: usize },
 }
 
-/// Projects the vertices of the next chunk, and says where it ends and how its corners are numbered.
+/// A chunk whose vertices are in the scratch.
+#[derive(Clone, Copy)]
+pub(super) struct Chunk {
+    /// The first triangle after it.
+    pub end: usize,
+    pub numbering: Numbering,
+    /// Where the next chunk's vertices are if they follow this one's, as most do, and how many cache lines of them to
+    /// ask for with each vector of triangles.
+    next_vertices: *const u8,
+    lines: usize,
+}
+
+const LINE: usize = 64;
+
+impl Chunk {
+    pub const NONE: Self = Self { end: 0, numbering: Numbering::From(0), next_vertices: core::ptr::null(), lines: 0 };
+
+    /// Asks for what the next chunk will read, a part with each vector of triangles, of which `position` is the first.
+    #[inline(always)]
+    pub fn prefetch_next<S: Simd>(&mut self, s: S, indices: &[u32], position: usize) {
+        if self.end == indices.len() / 3 {
+            return;
+        }
+        let next = indices.as_ptr().wrapping_add(3 * (position + CHUNK_TRIANGLES));
+        for line in 0..(12 * S::LANES).div_ceil(LINE) {
+            s.prefetch(next.wrapping_byte_add(line * LINE));
+        }
+        for _ in 0..self.lines {
+            s.prefetch(self.next_vertices.cast());
+            self.next_vertices = self.next_vertices.wrapping_add(LINE);
+        }
+    }
+}
+
+/// Projects the vertices of the next chunk.
 ///
 /// # Safety
 /// The vertices can be read; `position` is below the number of triangles.
@@ -60,7 +94,7 @@ pub(super) unsafe fn project<S: Simd>(
     indices: &[u32],
     position: usize,
     scratch: &mut Scratch,
-) -> (usize, Numbering) {
+) -> Chunk {
     let mut count = (indices.len() / 3 - position).min(CHUNK_TRIANGLES);
     let mut chunk = &indices[3 * position..3 * (position + count)];
     let (mut least, mut largest) = index_range(s, chunk);
@@ -76,7 +110,10 @@ pub(super) unsafe fn project<S: Simd>(
     if vertices <= CHUNK_VERTICES && dense(least, largest, count) {
         // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
         unsafe { reader.dense(camera, least, vertices, scratch) };
-        return (position + count, Numbering::From(least));
+        let (first, end) = (reader.at(least), reader.at(largest + 1));
+        let lines = (end.addr() - first.addr()).div_ceil(LINE).div_ceil(count.div_ceil(S::LANES));
+        let numbering = Numbering::From(least);
+        return Chunk { end: position + count, numbering, next_vertices: end, lines };
     }
     // SAFETY: the caller's contract.
     let count = unsafe {
@@ -89,5 +126,5 @@ pub(super) unsafe fn project<S: Simd>(
             }
         }
     };
-    (position + count, Numbering::Local { first: position })
+    Chunk { end: position + count, numbering: Numbering::Local { first: position }, ..Chunk::NONE }
 }

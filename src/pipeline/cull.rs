@@ -4,7 +4,7 @@
 
 use super::batch::Batch;
 use super::boxes::Look;
-use super::chunk::{self, Numbering};
+use super::chunk::{self, Chunk, Numbering};
 use super::clip::{self, Clipped};
 use super::last_step::{All, LastStep, take_survivors};
 use super::project::{Camera, Reader, SHIFT, bit_where, outcode, project};
@@ -48,16 +48,17 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     let mut tally = Tally { processed: triangles as u64, ..Tally::default() };
     let (mut in_view, mut unprojectable) = (false, false);
     let mut direct = None;
-    let (mut position, mut chunk_end, mut numbering) = (0, 0, Numbering::From(0));
+    let (mut position, mut chunk) = (0, Chunk::NONE);
 
     while position < triangles && !unprojectable {
-        if position == chunk_end {
+        if position == chunk.end {
             // SAFETY: the pipeline's caller vouches for the vertices.
-            (chunk_end, numbering) = unsafe { chunk::project(s, camera, &reader, mesh.triangles, position, scratch) };
+            chunk = unsafe { chunk::project(s, camera, &reader, mesh.triangles, position, scratch) };
         }
-        let count = S::LANES.min(chunk_end - position);
+        chunk.prefetch_next(s, mesh.triangles, position);
+        let count = S::LANES.min(chunk.end - position);
         // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
-        let group = unsafe { Group::new(s, mesh.triangles, position, count, numbering, facing, scratch) };
+        let group = unsafe { Group::new(s, mesh.triangles, position, count, chunk.numbering, facing, scratch) };
         let sieve = group.sieve(s, L::PURPOSE, buffer, camera, facing);
         in_view |= sieve.in_view;
         let kept = s.mask_bits(sieve.kept);

@@ -175,7 +175,7 @@ impl<S: Simd> Reader<S> {
 
     /// Address of x of a vertex.
     #[inline(always)]
-    fn at(&self, index: u32) -> *const u8 {
+    pub fn at(&self, index: u32) -> *const u8 {
         // The stride is not negative, and the vertex is there: the product does not overflow.
         self.source.base.wrapping_add(index as usize * self.source.layout.stride as usize)
     }
