@@ -16,12 +16,13 @@ impl Job for IndexRange<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> (u32, u32) {
-        index_range(s, self.0)
+        index_range(s, self.0, None)
     }
 }
 
+/// Asks meanwhile for a cache line a vector of indices, from an address on.
 #[inline(always)]
-fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
+fn index_range<S: Simd>(s: S, indices: &[u32], vertices: Option<*const u8>) -> (u32, u32) {
     // The least is the complement of the largest complement.
     let (mut low, mut high) = (s.i(0), s.i(0));
     let mut done = 0;
@@ -34,6 +35,9 @@ fn index_range<S: Simd>(s: S, indices: &[u32]) -> (u32, u32) {
         };
         low = s.max_u(low, s.and_not(index, s.i(-1)));
         high = s.max_u(high, index);
+        if let Some(vertices) = vertices {
+            s.prefetch(vertices.wrapping_add(done / S::LANES * LINE).cast());
+        }
         done += S::LANES;
     }
     (!s.largest_u(low), s.largest_u(high))
@@ -97,14 +101,16 @@ pub(super) unsafe fn project<S: Simd>(
 ) -> Chunk {
     let mut count = (indices.len() / 3 - position).min(CHUNK_TRIANGLES);
     let mut chunk = &indices[3 * position..3 * (position + count)];
-    let (mut least, mut largest) = index_range(s, chunk);
+    // The first chunk's vertices begin near the first index, as most do.
+    let vertices = (position == 0).then(|| reader.at(chunk[0]));
+    let (mut least, mut largest) = index_range(s, chunk, vertices);
     // Dense enough that most of those between are not for nothing.
     let dense = |least: u32, largest: u32, count: usize| ((largest - least) as usize) < 3 * count + MAX_LANES;
     if dense(least, largest, count) && (largest - least) as usize >= CHUNK_VERTICES {
         // Triangles that share few vertices.
         count = CHUNK_VERTICES / 3;
         chunk = &chunk[..3 * count];
-        (least, largest) = index_range(s, chunk);
+        (least, largest) = index_range(s, chunk, None);
     }
     let vertices = (largest - least) as usize + 1;
     if vertices <= CHUNK_VERTICES && dense(least, largest, count) {
