@@ -71,12 +71,12 @@ impl Row<'_> {
             // the block's; the caller vouches for who else uses them; both were made for their rules.
             unsafe {
                 let other = TilePlace::new(from, x, y);
-                if Touched::of::<T>(from, other).none() {
+                if Touched::of::<T>(other).none() {
                     continue;
                 }
                 let at = TilePlace::new(into, x, y);
-                let mut planes = load::<T, R>(s, into, at);
-                let theirs = load::<T, O>(s, from, other);
+                let mut planes = load::<T, R>(s, into, at, || y);
+                let theirs = load::<T, O>(s, from, other, || y);
                 // Depths behind the reference change nothing.
                 let nearest = s.max_positive(theirs.z0, theirs.z_near);
                 if s.all(s.le(nearest, planes.z0)) {
@@ -96,7 +96,7 @@ impl Row<'_> {
                     }
                 }
                 R::store(s, at.planes, &planes);
-                s.store_least(at.least, into.tiles_w() as usize, planes.z0);
+                s.store_least(at.least, at.pitch, planes.z0);
             }
         }
     }

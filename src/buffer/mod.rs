@@ -302,19 +302,21 @@ unsafe fn fresh<S: Simd, R: Rule>(s: S, border: Option<*const u32>) -> Planes<S>
     planes
 }
 
-/// Where a tile is: its column and row, its planes, and its least depth.
+/// Where a tile is: its column, its planes, its least depth, and how far it is to that of the tile below. Its row is
+/// seldom asked for, and goes as a function.
 #[derive(Clone, Copy)]
 pub(crate) struct TilePlace {
     pub x: u32,
-    pub y: u32,
     pub planes: *mut u32,
     pub least: *mut f32,
+    pub pitch: usize,
 }
 
 impl TilePlace {
     #[inline(always)]
     pub fn new(buffer: &Buffer, x: u32, y: u32) -> Self {
-        Self { x, y, planes: buffer.tile(x, y), least: buffer.least_of(x, y) }
+        let pitch = buffer.tiles_w() as usize;
+        Self { x, planes: buffer.tile(x, y), least: buffer.least_of(x, y), pitch }
     }
 }
 
@@ -330,9 +332,9 @@ impl Touched {
     /// # Safety
     /// It is a tile of the buffer, into which nobody draws.
     #[inline(always)]
-    pub unsafe fn of<S: Simd>(buffer: &Buffer, at: TilePlace) -> Self {
+    pub unsafe fn of<S: Simd>(at: TilePlace) -> Self {
         const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
-        let below = if S::LANES == SUB_TILES { 0 } else { buffer.tiles_w() as usize };
+        let below = if S::LANES == SUB_TILES { 0 } else { at.pitch };
         // SAFETY: the caller's contract; blocks are whole.
         unsafe { Self { upper: (*at.least).to_bits() as i32, lower: (*at.least.add(below)).to_bits() as i32 } }
     }
@@ -353,15 +355,15 @@ impl Touched {
 /// # Safety
 /// It is a tile of the buffer, which was made for the rule `R` and into which nobody draws.
 #[inline(always)]
-pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace) -> Planes<S> {
+pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace, row: impl Fn() -> u32) -> Planes<S> {
     // SAFETY: the caller's contract; blocks are whole.
     unsafe {
-        let touched = Touched::of::<S>(buffer, at);
+        let touched = Touched::of::<S>(at);
         let planes = R::load(s, at.planes);
         if touched.all() {
             return planes;
         }
-        let untouched = fresh::<S, R>(s, buffer.border(at.x, at.y));
+        let untouched = fresh::<S, R>(s, buffer.border(at.x, row()));
         if touched.none() {
             return untouched;
         }

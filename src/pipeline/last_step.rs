@@ -167,8 +167,9 @@ impl<T: Simd, S: TileStep<T>> Apart<T> for Traverse<'_, S> {
     type Output = (Option<u32>, S);
 
     #[inline(always)]
-    fn run(mut self, t: T) -> (Option<u32>, S) {
-        (traverse(t, self.way, &mut self.step), self.step)
+    fn run(self, t: T) -> (Option<u32>, S) {
+        let Self { way, mut step } = self;
+        (traverse(t, way, &mut step), step)
     }
 }
 
@@ -230,20 +231,20 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     }
 
     #[inline(always)]
-    unsafe fn tile(&mut self, t: T, at: TilePlace, mut covered: T::I, depth: T::F) -> bool {
+    unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, mut covered: T::I, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let inserted = unsafe {
             if self.cuts
-                && let Some(outside) = self.buffer.cut(at.x, at.y)
+                && let Some(outside) = self.buffer.cut(at.x, row())
             {
                 // With a pixel inside of the screen come all pixels outside.
                 let outside = t.load_i(outside);
                 covered = t.select_i(t.eq_i(covered, t.i(0)), t.i(0), t.or(covered, outside));
             }
-            let mut planes = load::<T, R>(t, self.buffer, at);
+            let mut planes = load::<T, R>(t, self.buffer, at, row);
             let inserted = R::insert(t, &mut planes, covered, depth);
             R::store(t, at.planes, &planes);
-            t.store_least(at.least, self.buffer.tiles_w() as usize, planes.z0);
+            t.store_least(at.least, at.pitch, planes.z0);
             inserted
         };
         // Four counts in the bytes of a word: of two tiles with a lane in which something was updated, merged.
@@ -255,17 +256,17 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileStep<T> for Update<'_, R, COUNT> {
     }
 
     #[inline(always)]
-    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool {
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         unsafe {
-            if Touched::of::<T>(self.buffer, at).all() && R::replace(t, at.planes, depth) {
-                t.store_least(at.least, self.buffer.tiles_w() as usize, depth);
+            if Touched::of::<T>(at).all() && R::replace(t, at.planes, depth) {
+                t.store_least(at.least, at.pitch, depth);
                 if COUNT {
                     self.counts += if T::LANES == SUB_TILES { 0x0001_0001 } else { 0x0101_0101 };
                 }
                 return true;
             }
-            self.tile(t, at, t.i(-1), depth)
+            self.tile(t, at, row, t.i(-1), depth)
         }
     }
 
@@ -353,12 +354,12 @@ impl<T: Simd> TileStep<T> for Touch {
     }
 
     #[inline(always)]
-    unsafe fn tile(&mut self, t: T, _: TilePlace, covered: T::I, _: T::F) -> bool {
+    unsafe fn tile(&mut self, t: T, _: TilePlace, _: impl Fn() -> u32, covered: T::I, _: T::F) -> bool {
         nothing(t, covered)
     }
 
     #[inline(always)]
-    unsafe fn whole_tile(&mut self, _: T, _: TilePlace, _: T::F) -> bool {
+    unsafe fn whole_tile(&mut self, _: T, _: TilePlace, _: impl Fn() -> u32, _: T::F) -> bool {
         false
     }
 }
@@ -393,17 +394,17 @@ impl<T: Simd, R: Rule> TileStep<T> for Compare<'_, R> {
     }
 
     #[inline(always)]
-    unsafe fn tile(&mut self, t: T, at: TilePlace, covered: T::I, depth: T::F) -> bool {
+    unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, covered: T::I, depth: T::F) -> bool {
         self.touches |= !nothing(t, covered);
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
-        let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at), covered, depth) };
+        let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at, row), covered, depth) };
         t.all(hidden)
     }
 
     #[inline(always)]
-    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, depth: T::F) -> bool {
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool {
         // SAFETY: the caller's contract.
-        unsafe { self.tile(t, at, t.i(-1), depth) }
+        unsafe { self.tile(t, at, row, t.i(-1), depth) }
     }
 }
 

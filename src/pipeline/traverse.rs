@@ -60,6 +60,8 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Lists { strips, rows } = unsafe { lists.assume_init_mut() };
     let mut strips = Strips::new(strips, alive.lanes);
+    // By value, for who stores into a tile might have changed what stands behind a reference.
+    let (first_planes, first_least, pitch) = (buffer.planes(), buffer.least(), buffer.tiles_w() as usize);
     while let Some(open) = strips.next::<T, S>(t, buffer, clip, batch) {
         for k in 0..open.strips {
             let strip = strips.opened(k);
@@ -67,14 +69,13 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             // SAFETY: strips are fewer than there is room for; setup stored what it found of the lane.
             unsafe {
                 let rows = rows.get_unchecked_mut(strip).as_mut_ptr();
-                write_rows::<T, S>(t, batch, lane, strips.rows(strip), rows);
+                write_rows::<T, S>(t, batch, lane, strips.rows(strip), buffer.width(), rows);
             }
         }
         for k in 0..open.tiles {
             if k + AHEAD < open.tiles {
                 let (strip, x) = strips.tile(k + AHEAD);
-                let planes =
-                    buffer.planes().wrapping_add((strips.common(strip).block + x) as usize * S::PLANES * BLOCK);
+                let planes = first_planes.wrapping_add((strips.common(strip).block + x) as usize * S::PLANES * BLOCK);
                 for plane in 0..S::PLANES {
                     t.prefetch(planes.wrapping_add(plane * BLOCK));
                 }
@@ -91,21 +92,21 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
             let plane = t.add(z, t.mul(t.f(common.across), t.to_f(column)));
             let clamp = t.f(common.clamp);
             let depth = if S::DRAWS { t.max(plane, clamp) } else { t.min(plane, clamp) };
-            let (lane, y) = strips.place(strip);
+            let row = || strips.place(strip).1 * height::<T>();
             // SAFETY: a tile of the triangle's box is a tile of the buffer.
             let more = unsafe {
-                let half = if height::<T>() == 1 { y as usize % 2 * SUB_TILES } else { 0 };
-                let planes = buffer.planes().add((common.block + x) as usize * S::PLANES * BLOCK + half);
-                let least = buffer.least().add((common.index + x) as usize);
-                let at = TilePlace { x, y: y * height::<T>(), planes, least };
+                let half = if height::<T>() == 1 { row() as usize % 2 * SUB_TILES } else { 0 };
+                let planes = first_planes.add((common.block + x) as usize * S::PLANES * BLOCK + half);
+                let least = first_least.add((common.index + x) as usize);
+                let at = TilePlace { x, planes, least, pitch };
                 if x.wrapping_sub(common.inner_first) < common.inner {
-                    step.whole_tile(t, at, depth)
+                    step.whole_tile(t, at, row, depth)
                 } else {
-                    step.tile(t, at, coverage(t, left, right, x), depth)
+                    step.tile(t, at, row, coverage(t, left, right, x), depth)
                 }
             };
             if !more {
-                return Some(lane as u32);
+                return Some(strips.place(strip).0 as u32);
             }
         }
         step.tiles_done(open.tiles);
@@ -126,7 +127,14 @@ fn coverage<T: Simd>(t: T, left: T::I, right: T::I, x: u32) -> T::I {
 /// # Safety
 /// Setup stored all of the lane; `to` can be written.
 #[inline(always)]
-unsafe fn write_rows<T: Simd, S: TileStep<T>>(t: T, batch: &Batch, lane: usize, (top, sub_row): (f32, i32), to: *mut Rows) {
+unsafe fn write_rows<T: Simd, S: TileStep<T>>(
+    t: T,
+    batch: &Batch,
+    lane: usize,
+    (top, sub_row): (f32, i32),
+    width: u32,
+    to: *mut Rows,
+) {
     // SAFETY: the caller's contract.
     let of_d = |field: &Lanes<f64>| t.d(unsafe { field.get(lane) });
     // SAFETY: the caller's contract.
@@ -144,9 +152,10 @@ unsafe fn write_rows<T: Simd, S: TileStep<T>>(t: T, batch: &Batch, lane: usize, 
     let right = event(&batch.right, &batch.right_slope);
     let left = t.d_to_i(t.max_d(left, event(&batch.middle_left, &batch.middle_slope)));
     let right = t.d_to_i(t.min_d(right, event(&batch.middle_right, &batch.middle_slope)));
-    // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal. In rows outside
-    // of the box they may be anything, and what does not fit in an integer, too.
-    let (column0, column1) = (of_i(&batch.column0), of_i(&batch.column1));
+    // Into the box. Events of a query may lie beyond the corners, where an edge is nearly horizontal; those of a draw
+    // do not, but beyond the screen. In rows outside of the box they may be anything, and what does not fit in an integer, too.
+    let (column0, column1) =
+        if S::DRAWS { (t.i(0), t.i(width as i32)) } else { (of_i(&batch.column0), of_i(&batch.column1)) };
     let left = t.min_i(t.max_i(left, column0), column1);
     let right = t.max_i(t.min_i(right, column1), column0);
     let inside = t.and_m(t.le(of(&batch.row0), rows), t.lt(rows, of(&batch.row1)));
