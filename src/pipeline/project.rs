@@ -173,6 +173,12 @@ impl<S: Simd> Reader<S> {
         Self { s, source, packing: Packing::of(source.layout), rows: matrix.map(|m| Rows::new(s, m)) }
     }
 
+    /// From vertex to vertex, in bytes.
+    #[inline(always)]
+    pub fn stride(&self) -> usize {
+        self.source.layout.stride as usize
+    }
+
     /// Address of x of a vertex.
     #[inline(always)]
     pub fn at(&self, index: u32) -> *const u8 {
