@@ -24,7 +24,7 @@ impl Job for IndexRange<'_> {
     }
 }
 
-/// Asks meanwhile for a cache line a vector of indices, from an address on.
+/// The least and the largest; with `vertices`, a cache line from that address on is asked for with each vector of indices.
 #[inline(always)]
 fn index_range<S: Simd>(s: S, indices: &[u32], vertices: Option<*const u8>) -> (u32, u32) {
     // The least is the complement of the largest complement.
@@ -87,7 +87,7 @@ impl Chunk {
             return;
         }
         let next = indices.as_ptr().wrapping_add(3 * (position + CHUNK_TRIANGLES));
-        for line in 0..(12 * S::LANES).div_ceil(LINE) {
+        for line in 0..(size_of::<[u32; 3]>() * S::LANES).div_ceil(LINE) {
             s.prefetch(next.wrapping_byte_add(line * LINE));
         }
         for _ in 0..self.lines {

@@ -183,7 +183,7 @@ impl<S: Simd> Reader<S> {
     #[inline(always)]
     pub fn at(&self, index: u32) -> *const u8 {
         // The stride is not negative, and the vertex is there: the product does not overflow.
-        self.source.base.wrapping_add(index as usize * self.source.layout.stride as usize)
+        self.source.base.wrapping_add(index as usize * self.stride())
     }
 
     /// Vertices `first` to `first + LANES` in clip space. `whole`: another vertex follows them, or all of a stride
@@ -194,7 +194,7 @@ impl<S: Simd> Reader<S> {
     #[inline(always)]
     pub unsafe fn load(&self, first: u32, whole: bool) -> [S::F; 3] {
         let (s, p, layout) = (self.s, self.at(first), self.source.layout);
-        let stride = layout.stride as usize;
+        let stride = self.stride();
         // SAFETY: the caller's contract; sixteen bytes of every vertex may be read where `whole` says so.
         let v = unsafe {
             match self.packing {

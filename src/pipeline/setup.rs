@@ -6,8 +6,9 @@
 //! `x + slope * r` in f64. The exact value there has a denominator of `256 * |dy|`; a bias of
 //! `1 - 1 / (512 * |dy|)` turns the ceiling into a floor with a tolerance of half a denominator either way.
 //! With coordinates up to 2^23 (32,768 pixels) and 2^14 rows, the roundings sum to less than a third of the tolerance,
-//! so the event is exact, and a fused multiply-add, which leaves roundings out, comes to the same. Wider triangles go through `edges.rs`, where the constant part is rounded once. A horizontal
-//! edge bounds nothing: the range of rows, which is exact by itself, does.
+//! so the event is exact, and a fused multiply-add, which leaves roundings out, comes to the same. Wider triangles go
+//! through `edges.rs`, where the constant part is rounded once. A horizontal edge bounds nothing: the range of rows, which
+//! is exact by itself, does.
 //!
 //! **Depth.** 1/w is a plane on the screen. For each sub-tile a draw needs a bound that is not nearer than the
 //! triangle anywhere in the sub-tile's square, a query one that is not farther: the plane at the

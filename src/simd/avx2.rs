@@ -8,7 +8,7 @@ use super::{Apart, Job, Simd, record, store_relaxed};
 pub(super) struct Avx2(());
 
 /// # Safety
-/// The processor has AVX2, BMI1, BMI2, LZCNT and POPCNT.
+/// The processor has AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()))

@@ -106,6 +106,9 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
         let sums =
             [s.add_d(da, db), s.sub_d(da, db), s.mul_d(da, db), s.div_d(da, db), s.min_d(da, db), s.max_d(da, db)];
         results.extend(sums.map(doubles));
+        // Of integers, which come to the same rounded once or twice.
+        let whole = |x: S::I| s.to_d(s.to_f(s.sra::<12>(x)));
+        results.push(doubles(s.mul_add_d(whole(i), whole(j), whole(index))));
         results.push(floats(s.d_to_f(s.add_d(da, db))));
         results.push(lanes(s.d_to_i(s.to_d(s.mul(s.to_f(s.sra::<4>(i)), s.f(0.37))))));
         results.push(masks(s.first(S::LANES)));
