@@ -205,6 +205,14 @@ fn what_was_cleared_hides_nothing_from_then_on() {
         let wall = Vertices::new(&WALL, VertexLayout::CLIP_SPACE).unwrap();
         let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
         assert_eq!(pool.test_triangles(wall, &TWO, &options), Ok(CullingResult::Visible), "frame {frame}");
+        // Found by the fuzzer: a triangle that passes by the corner of the screen, with a box that the wall hid.
+        let passes = [9.6, 7.2, 0.0, 8.0, 7.2, 9.6, 0.0, 8.0, 9.6, 9.6, 0.0, 8.0];
+        let passes = Vertices::new(&passes, VertexLayout::CLIP_SPACE).unwrap();
+        let result = pool.test_triangles(passes, &[0, 1, 2], &options).unwrap();
+        assert_ne!(result, CullingResult::Occluded, "frame {frame}");
+        pool.flush();
+        let result = pool.test_triangles(passes, &[0, 1, 2], &options);
+        assert_eq!(result, Ok(CullingResult::ViewCulled), "frame {frame}");
         pool.wake_threads();
     }
 }

@@ -130,6 +130,9 @@ impl Driver<'_> {
         })?;
         ensure((status == OK) == family.size.is_some(), || format!("ClearBuffer: status {status}"))?;
         family.empty |= status == OK;
+        if let Some(pool) = &mut family.pool {
+            pool.cleared |= status == OK;
+        }
         Ok(())
     }
 

@@ -23,6 +23,8 @@ pub struct Pool {
     pub member: usize,
     /// Nothing was submitted since it was flushed.
     pub settled: bool,
+    /// A clear, or a new resolution, was submitted since it was flushed.
+    pub cleared: bool,
     /// The near plane that the next object gets.
     pub near: Option<f32>,
     pub matrix: Option<[f32; 16]>,
@@ -38,7 +40,7 @@ const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, off
 impl Pool {
     pub fn new(handle: *mut MOC_Threadpool, asks_early: bool) -> Self {
         let (matrix, layout, near) = (None, PACKED, None);
-        Self { handle, member: 0, settled: true, near, matrix, layout, asks_early, nearest: Vec::new() }
+        Self { handle, member: 0, settled: true, cleared: false, near, matrix, layout, asks_early, nearest: Vec::new() }
     }
 }
 
@@ -58,7 +60,7 @@ impl Driver<'_> {
         ensure(status == OK, || format!("ThreadpoolFlush: status {status}"))?;
         self.submitted(which, true)?;
         if let Some(pool) = &mut self.families[which].pool {
-            pool.settled = true;
+            (pool.settled, pool.cleared) = (true, false);
         }
         self.memory.lent_count = 0;
         Ok(())

@@ -315,7 +315,8 @@ impl CullingThreadpool {
         })
     }
 
-    /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`].
+    /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`]. `Visible` where they are
+    /// hidden only by what a clear that was submitted will take away, also if they pass by every pixel.
     ///
     /// # Errors
     /// As there.
