@@ -6,6 +6,8 @@ use super::{Apart, Job, Simd, record, store_relaxed};
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
 
+/// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
+#[inline(never)]
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
     job.run(Pair(Scalar4))
 }

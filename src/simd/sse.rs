@@ -13,6 +13,8 @@ pub(super) struct Sse2(());
 #[derive(Clone, Copy)]
 pub(super) struct Sse41(());
 
+/// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
+#[inline(never)]
 pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
     // Every x86-64 processor has SSE2: the token needs no more proof.
     job.run(Pair(Sse2(())))
