@@ -88,7 +88,8 @@ fn touched(min: f32, max: f32, size: u32) -> (u32, u32) {
     let smaller = |a: f64, b: f64| if a < b { a } else { b };
     let first = smaller(larger(f64::from(min) * half + half, 0.0), size - 1.0);
     let end = smaller(f64::from(max) * half + half, size);
-    // The largest number below: its whole part is the last pixel's. Below 0 is NaN, which is not larger.
+    // The largest number below: its whole part is the last pixel's. What is not above 0 becomes NaN or stays below
+    // it, and neither is larger.
     let below = f64::from_bits(end.to_bits().wrapping_sub(1));
     // SAFETY: neither is NaN, and both are from 0 to `size`.
     let whole = |x: f64| unsafe { x.to_int_unchecked::<i32>() as u32 };
@@ -139,7 +140,7 @@ impl Few<'_> {
     #[inline(always)]
     fn holds(tiles: TileRect) -> bool {
         let (columns, rows) = (tiles.x1 - tiles.x0 - 1, tiles.y1 - tiles.y0 - 1);
-        columns / FEW_COLUMNS | rows / FEW_ROWS == 0
+        (columns / FEW_COLUMNS) | (rows / FEW_ROWS) == 0
     }
 }
 
