@@ -206,7 +206,7 @@ impl<R: Rule> Job for Layers<'_, R> {
         // SAFETY: the rectangle's tiles are tiles of the buffer, and nobody draws there, which a pool sees to by its locks.
         let seen = unsafe {
             match self.walk.open {
-                Some(open) => self.sees_few(s, tiles, open, &mut looked),
+                Some(open) => self.sees_open::<S, FEW_COLUMNS>(s, (tiles.x0, tiles.y0), open, &mut looked),
                 None => self.sees(s, tiles, &mut looked),
             }
         };
@@ -216,18 +216,24 @@ impl<R: Rule> Job for Layers<'_, R> {
 }
 
 impl<R: Rule> Layers<'_, R> {
-    /// May something of the rectangle be seen in those of its few tiles that are open?
+    /// May something of the rectangle be seen in the tiles that `open` has a bit of, `A_ROW` a row, from one of them on?
     ///
     /// # Safety
     /// As [`Self::sees`].
     #[inline(always)]
-    unsafe fn sees_few<S: Simd>(&self, s: S, tiles: TileRect, mut open: u32, looked: &mut u64) -> bool {
+    unsafe fn sees_open<S: Simd, const A_ROW: u32>(
+        &self,
+        s: S,
+        (x, y): (u32, u32),
+        mut open: u32,
+        looked: &mut u64,
+    ) -> bool {
         while open != 0 {
             let tile = open.trailing_zeros();
             open &= open - 1;
             *looked += 1;
             // SAFETY: one of the tiles that the rectangle touches.
-            if unsafe { self.sees_tile(s, tiles.x0 + tile % FEW_COLUMNS, tiles.y0 + tile / FEW_COLUMNS) } {
+            if unsafe { self.sees_tile(s, x + tile % A_ROW, y + tile / A_ROW) } {
                 return true;
             }
         }
@@ -264,15 +270,10 @@ impl<R: Rule> Layers<'_, R> {
             }
             let mut x = first;
             while x < end {
-                let mut open = s.mask_bits(s.and_m(s.first((end - x) as usize), open_from(x)));
-                while open != 0 {
-                    let lane = open.trailing_zeros();
-                    open &= open - 1;
-                    *looked += 1;
-                    // SAFETY: one of the tiles that the rectangle touches.
-                    if unsafe { self.sees_tile(s, x + lane, y) } {
-                        return true;
-                    }
+                let open = s.mask_bits(s.and_m(s.first((end - x) as usize), open_from(x)));
+                // SAFETY: as above; all bits are of this row.
+                if unsafe { self.sees_open::<S, { u32::BITS }>(s, (x, y), open, looked) } {
+                    return true;
                 }
                 x += lanes;
             }

@@ -23,7 +23,7 @@ pub struct Pool {
     pub member: usize,
     /// Nothing was submitted since it was flushed.
     pub settled: bool,
-    /// A clear, or a new resolution, was submitted since it was flushed.
+    /// A clear was submitted since it was flushed.
     pub cleared: bool,
     /// The near plane that the next object gets.
     pub near: Option<f32>,
@@ -41,6 +41,11 @@ impl Pool {
     pub fn new(handle: *mut MOC_Threadpool, asks_early: bool) -> Self {
         let (matrix, layout, near) = (None, PACKED, None);
         Self { handle, member: 0, settled: true, cleared: false, near, matrix, layout, asks_early, nearest: Vec::new() }
+    }
+
+    /// All that was submitted is drawn.
+    pub fn flushed(&mut self) {
+        (self.settled, self.cleared) = (true, false);
     }
 }
 
@@ -60,7 +65,7 @@ impl Driver<'_> {
         ensure(status == OK, || format!("ThreadpoolFlush: status {status}"))?;
         self.submitted(which, true)?;
         if let Some(pool) = &mut self.families[which].pool {
-            (pool.settled, pool.cleared) = (true, false);
+            pool.flushed();
         }
         self.memory.lent_count = 0;
         Ok(())

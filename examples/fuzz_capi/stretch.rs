@@ -132,7 +132,7 @@ impl Driver<'_> {
         let wrong = refused.iter().position(|&status| status as i32 != NO_BUFFER);
         ensure(status == OK && wrong.is_none(), || format!("a pool without an object: {status}, call {wrong:?}"))?;
         // What was submitted is drawn by now.
-        (pool.settled, pool.cleared) = (true, false);
+        pool.flushed();
         self.memory.lent_count = 0;
         self.attach(which)
     }
@@ -153,7 +153,7 @@ impl Driver<'_> {
         self.submitted(which, true)?;
         // Nothing was submitted: the pool answers as the others do.
         if let Some(pool) = &mut self.families[which].pool {
-            (pool.settled, pool.cleared) = (true, false);
+            pool.flushed();
         }
         Ok(())
     }
