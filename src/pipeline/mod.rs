@@ -25,6 +25,7 @@ mod edges;
 mod kept;
 mod last_step;
 mod list;
+mod open_tiles;
 mod pages;
 mod project;
 mod scratch;

@@ -8,6 +8,7 @@
 use core::mem::MaybeUninit;
 
 use super::batch::{Batch, Lanes};
+use super::open_tiles::{HALF_SHIFT, OpenTiles, planes_before};
 use super::tile_step::TileStep;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
@@ -24,10 +25,10 @@ const CLOSED: f32 = -2.0;
 /// Eight roundings: of a constant, a slope, their product and sum, with room.
 const WIDEN: f32 = 8.0 / (1 << 24) as f32;
 
-const PLACE_SHIFT: i32 = 16;
-const LOW: u32 = (1 << PLACE_SHIFT) - 1;
+pub(super) const PLACE_SHIFT: i32 = 16;
+pub(super) const LOW: u32 = (1 << PLACE_SHIFT) - 1;
 
-type Words = [MaybeUninit<u32>; STRIPS + MAX_LANES];
+pub(super) type Words = [MaybeUninit<u32>; STRIPS + MAX_LANES];
 type Floats = [MaybeUninit<f32>; STRIPS + MAX_LANES];
 
 /// Rows of tiles that a vector takes at once: sixteen lanes are sixteen rows of pixels, which are two.
@@ -49,45 +50,33 @@ pub(super) struct Lists {
     /// row and the lower.
     upper: Floats,
     lower: Floats,
-    /// Of the strip's first row of tiles: number of column 0's block, and number of column 0's tile.
-    block: Words,
-    index: Words,
+    /// Of the strip's first row of tiles, and column 0: where its planes are, in bytes, and number of its tile.
+    pub(super) planes: Words,
+    pub(super) index: Words,
     /// First column and number of the tiles that are covered wholly.
-    inner_first: Words,
-    inner: Words,
+    pub(super) inner_first: Words,
+    pub(super) inner: Words,
     /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
     top: Floats,
     sub_row: Words,
     /// Depth bound's change from sub-tile to sub-tile, its clamp, and sub-tiles left of the box's first tile.
     across: Floats,
     clamp: Floats,
-    sub_column: Words,
+    pub(super) sub_column: Words,
     /// Strips with an open tile.
     opened: [MaybeUninit<u32>; STRIPS + 1],
-    /// Number of the strip and column of every open tile.
-    tiles: [MaybeUninit<u32>; MAX_TILES],
+    pub(super) tiles: OpenTiles,
 }
 
 /// The strips of some triangles, and how far they were taken.
 pub(super) struct Strips<'a> {
-    lists: &'a mut Lists,
+    pub(super) lists: &'a mut Lists,
     /// Triangles whose strips were not listed yet, and the row to go on with of the first.
     todo: u32,
     row: u32,
     /// Strips listed, and the one to go on with.
     listed: usize,
     next: usize,
-}
-
-/// What the tiles of a strip have in common; see [`Lists`].
-pub(super) struct Common {
-    pub block: u32,
-    pub index: u32,
-    pub inner_first: u32,
-    pub inner: u32,
-    pub across: f32,
-    pub clamp: f32,
-    pub sub_column: u32,
 }
 
 /// What is open at a time.
@@ -129,29 +118,13 @@ impl<'a> Strips<'a> {
         }
     }
 
-    /// What the tiles of a strip have in common.
+    /// Depth bound's change from sub-tile to sub-tile, and its clamp.
     #[inline(always)]
-    pub fn common(&self, strip: usize) -> Common {
+    pub fn slope(&self, strip: usize) -> (f32, f32) {
         // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
         unsafe {
-            Common {
-                block: self.lists.block.get_unchecked(strip).assume_init(),
-                index: self.lists.index.get_unchecked(strip).assume_init(),
-                inner_first: self.lists.inner_first.get_unchecked(strip).assume_init(),
-                inner: self.lists.inner.get_unchecked(strip).assume_init(),
-                across: self.lists.across.get_unchecked(strip).assume_init(),
-                clamp: self.lists.clamp.get_unchecked(strip).assume_init(),
-                sub_column: self.lists.sub_column.get_unchecked(strip).assume_init(),
-            }
+            (self.lists.across.get_unchecked(strip).assume_init(), self.lists.clamp.get_unchecked(strip).assume_init())
         }
-    }
-
-    /// Number of the strip, and column, of the `k`th open tile.
-    #[inline(always)]
-    pub fn tile(&self, k: usize) -> (usize, u32) {
-        // SAFETY: only those that `next` counted are asked for.
-        let word = unsafe { self.lists.tiles.get_unchecked(k).assume_init() };
-        unpack(word)
     }
 
     /// Lists the next open tiles. Nothing: there are no more strips.
@@ -171,11 +144,15 @@ impl<'a> Strips<'a> {
             let mut k = 0;
             while k < self.listed {
                 // SAFETY: `k` is below the number listed, and the list is padded.
-                unsafe { self.bound(t, buffer, clip, batch, k) };
+                unsafe { self.bound::<T, S>(t, buffer, clip, batch, k) };
                 k += T::LANES;
             }
         }
-        Some(self.open::<T, S>(t, buffer, clip))
+        let open = self.open::<T, S>(t, buffer, clip);
+        if T::LANES == MAX_LANES {
+            self.locate::<T, S>(t, open.tiles);
+        }
+        Some(open)
     }
 
     /// Lists the strips of the next triangles.
@@ -214,7 +191,14 @@ impl<'a> Strips<'a> {
     /// # Safety
     /// `k` is below `STRIPS`, and as many places were written.
     #[inline(always)]
-    unsafe fn bound<T: Simd>(&mut self, t: T, buffer: &Buffer, clip: TileRect, batch: &Batch, k: usize) {
+    unsafe fn bound<T: Simd, S: TileStep<T>>(
+        &mut self,
+        t: T,
+        buffer: &Buffer,
+        clip: TileRect,
+        batch: &Batch,
+        k: usize,
+    ) {
         // SAFETY: the caller's contract.
         let place = unsafe { t.load_i(self.lists.place.as_ptr().add(k).cast()) };
         let lane = t.sra::<PLACE_SHIFT>(place);
@@ -273,10 +257,11 @@ impl<'a> Strips<'a> {
         let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
         if height::<T>() == 1 {
             let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
-            store!(i block, block);
+            let half = t.shl::<HALF_SHIFT>(t.and(row, t.i(1)));
+            store!(i planes, t.add_i(planes_before::<T, S>(t, block), half));
             store!(i index, in_rows);
         } else {
-            store!(i block, in_rows);
+            store!(i planes, planes_before::<T, S>(t, in_rows));
             store!(i index, t.shl::<1>(in_rows));
         }
         store!(across, of(&batch.z_across));
@@ -327,7 +312,7 @@ impl<'a> Strips<'a> {
                     open = t.or_m(open, S::open(t, lower, t.f(lists.lower.get_unchecked(k).assume_init())));
                 }
                 let tile = t.add_i(t.i(first as i32), t.iota());
-                let n = t.compress(lists.tiles.as_mut_ptr().add(tiles).cast(), t.and_m(open, inside), tile);
+                let n = t.compress(lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.and_m(open, inside), tile);
                 tiles += n;
                 // A wide strip comes in several goes and is named once: there are no more names than strips.
                 lists.opened.get_unchecked_mut(strips).write(k as u32);
@@ -348,7 +333,7 @@ impl<'a> Strips<'a> {
 
 /// The two numbers of a word of a list.
 #[inline(always)]
-fn unpack(word: u32) -> (usize, u32) {
+pub(super) fn unpack(word: u32) -> (usize, u32) {
     ((word >> PLACE_SHIFT) as usize, word & LOW)
 }
 

@@ -129,6 +129,11 @@ impl Simd for Avx512 {
         unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table)) }
     }
     #[inline(always)]
+    unsafe fn lookup_32(self, table: *const f32, index: __m512i) -> __m512 {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm512_permutex2var_ps(_mm512_loadu_ps(table), index, _mm512_loadu_ps(table.add(16))) }
+    }
+    #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m512 {
         // SAFETY: the token, and the caller's contract.
         unsafe {

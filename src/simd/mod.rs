@@ -94,6 +94,14 @@ pub(crate) trait Simd: Copy {
         // SAFETY: the caller's contract.
         unsafe { self.gather(table, index) }
     }
+    /// The same of 32 floats.
+    /// # Safety
+    /// `table` can be read for 32 floats.
+    #[inline(always)]
+    unsafe fn lookup_32(self, table: *const f32, index: Self::I) -> Self::F {
+        // SAFETY: the caller's contract.
+        unsafe { self.gather(table, index) }
+    }
     /// `LANES` triangles of three indices: the first of each, the second of each, the third of each.
     /// # Safety
     /// `p` can be read for `3 * LANES` indices.
