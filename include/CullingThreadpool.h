@@ -46,9 +46,10 @@ public:
     typedef MaskedOcclusionCulling::VertexLayout VertexLayout;
 
     /**
-     * numThreads: threads besides those that call; 0 is allowed. binsW times binsH: the pieces into which the screen is
-     * cut; there are no more than four a thread, and none is smaller than 128x64 pixels. maxJobs: batches
-     * of calls that may be in flight; a caller who finds no room works until there is.
+     * numThreads: threads besides those that call; 0 is allowed, and no more of them work at once than there are
+     * processors besides the caller's. binsW times binsH: the pieces into which the screen is cut; there are no more
+     * than four a thread that works, and none is smaller than 128x64 pixels. maxJobs: batches of calls that may be in
+     * flight; a caller who finds no room works until there is.
      *
      * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
      * none, and Flush does the work.

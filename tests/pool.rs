@@ -41,7 +41,8 @@ fn scenes_have_the_bits_and_counts_of_one_thread() {
         for (threads, bins_w, bins_h, max_jobs) in
             [(0, 1, 1, 1), (1, 4, 4, 32), (2, 3, 2, 2), (3, 1, 64, 5), (8, 7, 7, 1), (2, u32::MAX, u32::MAX, 32)]
         {
-            let pool = CullingThreadpool::new(threads, bins_w, bins_h, max_jobs).unwrap();
+            let processors = if max_jobs == 5 { 2 } else { threads + 1 };
+            let pool = CullingThreadpool::with_processors(threads, bins_w, bins_h, max_jobs, processors).unwrap();
             pool.wake_threads();
             for (width, height) in [(333, 205), (1, 1), (1030, 517)] {
                 for statistics in [false, true] {
@@ -95,7 +96,7 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
         }
         other
     };
-    let pool = CullingThreadpool::new(threads, 4, 4, max_jobs).unwrap();
+    let pool = CullingThreadpool::with_processors(threads, 4, 4, max_jobs, threads + 1).unwrap();
     pool.set_buffer(object(200, 130, 0.1, Settings::default()));
     let mut direct = object(200, 130, 0.1, Settings::default());
     pool.wake_threads();
@@ -188,7 +189,7 @@ fn draw_wall(pool: &CullingThreadpool) {
 
 #[test]
 fn what_was_cleared_hides_nothing_from_then_on() {
-    let pool = CullingThreadpool::new(2, 4, 4, 32).unwrap();
+    let pool = CullingThreadpool::with_processors(2, 4, 4, 32, 3).unwrap();
     pool.set_buffer(object(640, 400, 0.1, Settings::default()));
     pool.wake_threads();
     let behind = |pool: &CullingThreadpool| pool.test_rect(-0.9, -0.9, 0.9, 0.9, 8.0).unwrap();
@@ -219,7 +220,7 @@ fn what_was_cleared_hides_nothing_from_then_on() {
 
 #[test]
 fn several_threads_submit_and_query_at_once() {
-    let pool = CullingThreadpool::new(2, 4, 4, 4).unwrap();
+    let pool = CullingThreadpool::with_processors(2, 4, 4, 4, 3).unwrap();
     pool.set_buffer(object(640, 400, 0.1, Settings { statistics: true, ..Settings::default() }));
     pool.wake_threads();
     let scene = &scenes::all()[0];
@@ -252,7 +253,7 @@ fn several_threads_submit_and_query_at_once() {
 
 #[test]
 fn every_order_of_calls_is_defined() {
-    let pool = CullingThreadpool::new(3, 2, 2, 2).unwrap();
+    let pool = CullingThreadpool::with_processors(3, 2, 2, 2, 4).unwrap();
     // Without an object.
     pool.flush();
     assert_eq!(pool.clear_buffer(), Err(Error::NoBuffer));

@@ -68,10 +68,11 @@ unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, 
 /// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
 /// each mesh; MOC_ThreadpoolFlush; tests.
 ///
-/// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
-/// thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
-/// came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
-/// in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
+/// Calls that draw return at once. No more threads work at once than there are processors besides the caller's. They draw in
+/// `bins_w` times `bins_h` pieces of the screen (no more than four a thread that works, none smaller than 128x64 pixels, and
+/// rows of the screen first), in each in the order in which the calls came: the buffer gets the same bits as from one
+/// thread. At most `max_jobs` batches of calls are in flight; a caller who finds no room works until there is. Without
+/// threads (0), whoever flushes does the work.
 ///
 /// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
 ///

@@ -12,7 +12,8 @@
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
 //! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
-//! to do, it looks about for 20 microseconds before it sleeps.
+//! to do, it looks about for 20 microseconds before it sleeps. Threads beyond the processors sleep on: they would only take turns
+//! with the others, and interrupt one that holds a bin.
 
 mod crew;
 mod grid;
@@ -79,22 +80,38 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. The screen is cut into `bins_w` times `bins_h`
-    /// bins, but into no more than four a thread, and none smaller than 128 by 64 pixels; rows of the screen first, for
-    /// threads side by side would write to the same cache lines. At most `max_jobs` batches of calls are in flight. Without
-    /// threads, whoever flushes does the work.
+    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. No more of them work at once than there are
+    /// processors besides the caller's. The screen is cut into `bins_w` times `bins_h` bins, but into no more than four a thread
+    /// that works, and none smaller than 128 by 64 pixels; rows of the screen first, for threads side by side would write to
+    /// the same cache lines. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
     ///
     /// # Errors
     /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
     /// where the system starts no more threads.
     pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
+        let processors = thread::available_parallelism().map_or(u32::MAX, |count| count.get() as u32);
+        Self::with_processors(threads, bins_w, bins_h, max_jobs, processors)
+    }
+
+    /// The same where so many processors are left to the pool and its caller, whatever the system says.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_processors(
+        threads: u32,
+        bins_w: u32,
+        bins_h: u32,
+        max_jobs: u32,
+        processors: u32,
+    ) -> Result<Self, Error> {
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || threads > MAX_THREADS {
             return Err(Error::InvalidSize);
         }
+        let at_once = threads.min(processors.saturating_sub(1).max(1));
         let mut pool = Self {
-            crew: Arc::new(Crew::new(max_jobs as usize)),
+            crew: Arc::new(Crew::new(max_jobs as usize, at_once as usize)),
             threads: Vec::new(),
-            bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
+            bins: Bins { wide: bins_w, high: bins_h, most: at_once.saturating_mul(BINS_A_THREAD) },
             near: AtomicU32::new(f32::NAN.to_bits()),
             target: RwLock::new(None),
             recording: Mutex::new(()),
