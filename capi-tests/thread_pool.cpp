@@ -160,7 +160,7 @@ void SameAsOneThread()
             for (const unsigned int *b : bins) {
                 const int rule = turn % N_RULES;
                 MOC *moc = Make(size.width, size.height, IMPLEMENTATIONS[turn++ % 5], RULES[rule]);
-                CullingThreadpool pool(t, b[0], b[1]);
+                CullingThreadpool pool(t, b[0], b[1], 32, t + 1);
                 pool.SetBuffer(moc);
                 pool.WakeThreads();
                 // The second frame is the one that counts: nothing of the first may be left.
@@ -261,7 +261,7 @@ void SmallJobs()
                 Direct direct(one);
                 const std::vector<std::vector<float>> expected = RandomCalls(direct, one, props, seed);
                 {
-                    CullingThreadpool pool(threads, 3, 2, jobs);
+                    CullingThreadpool pool(threads, 3, 2, jobs, threads + 1);
                     pool.SetBuffer(many);
                     pool.WakeThreads();
                     const std::vector<std::vector<float>> pixels = RandomCalls(pool, many, props, seed);
@@ -291,7 +291,7 @@ void Destroyed()
     for (int way = 0; way < 60; way++) {
         MOC *many = Make(640, 360);
         {
-            CullingThreadpool pool(static_cast<unsigned int>(way % 4), 4, 4, way % 2 == 0 ? 32 : 2);
+            CullingThreadpool pool(static_cast<unsigned int>(way % 4), 4, 4, way % 2 == 0 ? 32 : 2, 4);
             pool.SetBuffer(many);
             if (way % 3 != 0)
                 pool.WakeThreads();
@@ -306,7 +306,7 @@ void Destroyed()
         MOC::Destroy(many);
     }
     for (unsigned int threads = 0; threads < 6; threads++) {
-        CullingThreadpool asleep(threads, 2, 2), awake(threads, 2, 2);
+        CullingThreadpool asleep(threads, 2, 2, 32, threads + 1), awake(threads, 2, 2, 32, threads + 1);
         awake.WakeThreads();
     }
     MOC::Destroy(one);
@@ -319,7 +319,7 @@ void SleepAndWake()
     for (unsigned int threads : {0u, 1u, 2u, 5u}) {
         MOC *one = Make(200, 100), *many = Make(200, 100);
         Direct direct(one);
-        CullingThreadpool pool(threads, 1, 1);
+        CullingThreadpool pool(threads, 1, 1, 32, threads + 1);
         pool.Flush();
         pool.SetBuffer(many);
         pool.Flush();
@@ -368,7 +368,7 @@ void SleepAndWake()
     }
     // Suspended by one thread while another waits.
     MOC *moc = Make(640, 360);
-    CullingThreadpool pool(2, 4, 4, 2);
+    CullingThreadpool pool(2, 4, 4, 2, 3);
     pool.SetBuffer(moc);
     std::atomic<bool> done(false);
     std::thread restless([&] {
@@ -395,7 +395,7 @@ void AfterClear()
     const Mesh wall(-2, -2, 2, 2, 10), left(-2, -2, 0, 2, 10), behind(0.2f, -0.4f, 0.6f, 0.4f, 20), noise(400, 9);
     for (unsigned int threads : {0u, 1u, 3u}) {
         MOC *moc = Make(500, 300);
-        CullingThreadpool pool(threads, 4, 4);
+        CullingThreadpool pool(threads, 4, 4, 32, threads + 1);
         pool.SetBuffer(moc);
         int lies = 0, lost = 0;
         const auto rect = [&] { return Occluded(pool.TestRect(0.2f, -0.4f, 0.6f, 0.4f, 20)); };
@@ -443,7 +443,7 @@ void QueriesMeanwhile()
         meshes.emplace_back(-1.5f, y - 0.5f, -0.05f, y + 0.5f, w);
     }
     MOC *one = Make(1000, 500), *many = Make(1000, 500);
-    CullingThreadpool pool(2, 4, 4, 4);
+    CullingThreadpool pool(2, 4, 4, 4, 3);
     pool.SetBuffer(many);
     pool.WakeThreads();
     std::atomic<bool> done(false);
@@ -526,7 +526,7 @@ void TwoSubmit()
     for (int round = 0; round < 12; round++) {
         MOC *one = Make(1024, 200), *many = Make(1024, 200);
         Direct direct(one);
-        CullingThreadpool pool(round % 3 == 0 ? 0 : 2, 4, 4, round % 2 == 0 ? 32 : 1);
+        CullingThreadpool pool(round % 3 == 0 ? 0 : 2, 4, 4, round % 2 == 0 ? 32 : 1, 3);
         pool.SetBuffer(many);
         if (round % 4 != 3)
             pool.WakeThreads();
@@ -556,7 +556,7 @@ void Buffers()
 {
     const Mesh mesh(300, 14);
     float pixel = 5.0f;
-    CullingThreadpool pool(2, 4, 4);
+    CullingThreadpool pool(2, 4, 4, 32, 3);
     pool.WakeThreads();
     const auto nothing = [&] {
         Draw(pool, mesh);
@@ -623,7 +623,7 @@ void Refused()
     const unsigned int *indices = wall.indices.data();
     CullingThreadpool none(0, 0, 0, 0), pool(2, 2, 2); // zeros count as ones
     MOC_Threadpool *plain = nullptr;
-    CHECK_EQ(MOC_ThreadpoolCreate(2, 2, 2, 4, &plain), MOC_STATUS_OK);
+    CHECK_EQ(MOC_ThreadpoolCreate(2, 2, 2, 4, 0, &plain), MOC_STATUS_OK);
     MOC *moc = Make(200, 100), *other = Make(200, 104);
     const std::vector<float> empty = Depth(moc);
     pool.SetBuffer(moc);

@@ -59,7 +59,7 @@ static void merge(int32_t rule)
         draw(made[i], (uint32_t)i);
     }
     others[OTHERS] = others[0]; /* once more */
-    OK(MOC_ThreadpoolCreate(2, 2, 2, 4, &pool));
+    OK(MOC_ThreadpoolCreate(2, 2, 2, 4, 0, &pool));
     OK(MOC_ThreadpoolSetBuffer(pool, pooled));
     OK(MOC_ThreadpoolWakeThreads(pool));
     for (i = 0; i <= OTHERS; i++)
@@ -135,12 +135,12 @@ static void every_function(void)
     size_t i;
     random_triangles(vertices, indices, N, 3);
 
-    IS_NULL(MOC_ThreadpoolCreate(1, 1, 1, 1, NULL));
-    OK(MOC_ThreadpoolCreate(2, 3, 2, 4, &pool));
+    IS_NULL(MOC_ThreadpoolCreate(1, 1, 1, 1, 0, NULL));
+    OK(MOC_ThreadpoolCreate(2, 3, 2, 4, 3, &pool));
     CHECK(pool != NULL);
     for (i = 0; i < 3; i++) {
         none = pool;
-        CHECK_EQ(MOC_ThreadpoolCreate(1, i != 0, i != 1, i != 2, &none), MOC_STATUS_INVALID_SIZE);
+        CHECK_EQ(MOC_ThreadpoolCreate(1, i != 0, i != 1, i != 2, i, &none), MOC_STATUS_INVALID_SIZE);
         CHECK(none == NULL);
     }
     OK(MOC_ThreadpoolDestroy(NULL));

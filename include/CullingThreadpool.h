@@ -46,19 +46,20 @@ public:
     typedef MaskedOcclusionCulling::VertexLayout VertexLayout;
 
     /**
-     * numThreads: threads besides those that call; 0 is allowed, and no more of them work at once than there are
-     * processors besides the caller's. binsW times binsH: the pieces into which the screen is cut; there are no more
-     * than four a thread that works, and none is smaller than 128x64 pixels. maxJobs: batches of calls that may be in
-     * flight; a caller who finds no room works until there is.
+     * numThreads: threads besides those that call; 0 is allowed, and where there are fewer processors besides the
+     * caller's, there are fewer threads, but one at least. binsW times binsH: the pieces into which the screen is cut;
+     * there are no more than four a thread, and none is smaller than 128x64 pixels. maxJobs: batches of calls that may
+     * be in flight; a caller who finds no room works until there is. numProcessors: 0 asks the system.
      *
      * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
      * none, and Flush does the work.
      */
-    CullingThreadpool(unsigned int numThreads, unsigned int binsW, unsigned int binsH, unsigned int maxJobs = 32)
+    CullingThreadpool(unsigned int numThreads, unsigned int binsW, unsigned int binsH, unsigned int maxJobs = 32,
+                      unsigned int numProcessors = 0)
     {
         const uint32_t w = binsW != 0 ? binsW : 1, h = binsH != 0 ? binsH : 1, jobs = maxJobs != 0 ? maxJobs : 1;
-        if (MOC_ThreadpoolCreate(numThreads, w, h, jobs, &mPool) != MOC_STATUS_OK)
-            MOC_ThreadpoolCreate(0, w, h, jobs, &mPool);
+        if (MOC_ThreadpoolCreate(numThreads, w, h, jobs, numProcessors, &mPool) != MOC_STATUS_OK)
+            MOC_ThreadpoolCreate(0, w, h, jobs, numProcessors, &mPool);
     }
 
     /** Draws what was submitted, and ends the threads. */

@@ -1168,17 +1168,18 @@ MOC_Status MOC_TransformVertices(const float *matrix,
                                  const struct MOC_VertexLayout *layout);
 
 /**
- * Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). The threads sleep until
- * MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to MOC_ThreadpoolDestroy.
+ * Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
+ * besides the caller's, there are fewer threads, but one at least; 0: as many processors as the system says. The threads sleep
+ * until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to
+ * MOC_ThreadpoolDestroy.
  *
  * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
  * each mesh; MOC_ThreadpoolFlush; tests.
  *
- * Calls that draw return at once. No more threads work at once than there are processors besides the caller's. They draw in
- * `bins_w` times `bins_h` pieces of the screen (no more than four a thread that works, none smaller than 128x64 pixels, and
- * rows of the screen first), in each in the order in which the calls came: the buffer gets the same bits as from one
- * thread. At most `max_jobs` batches of calls are in flight; a caller who finds no room works until there is. Without
- * threads (0), whoever flushes does the work.
+ * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
+ * thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
+ * came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
+ * in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
  *
  * Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
  *
@@ -1192,6 +1193,7 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
                                 uint32_t bins_w,
                                 uint32_t bins_h,
                                 uint32_t max_jobs,
+                                uint32_t processors,
                                 struct MOC_Threadpool **out);
 
 /**

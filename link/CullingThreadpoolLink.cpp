@@ -52,8 +52,8 @@ CullingThreadpool::CullingThreadpool(unsigned int numThreads, unsigned int binsW
     const uint32_t w = binsW != 0 ? binsW : 1, h = binsH != 0 ? binsH : 1, jobs = maxJobs != 0 ? maxJobs : 1;
     MOC_Threadpool *pool = nullptr;
     // Where the system starts no more threads the pool has none, and Flush does the work.
-    if (MOC_ThreadpoolCreate(numThreads, w, h, jobs, &pool) != MOC_STATUS_OK)
-        MOC_ThreadpoolCreate(0, w, h, jobs, &pool);
+    if (MOC_ThreadpoolCreate(numThreads, w, h, jobs, 0, &pool) != MOC_STATUS_OK)
+        MOC_ThreadpoolCreate(0, w, h, jobs, 0, &pool);
     mRenderQueue = reinterpret_cast<RenderJobQueue *>(pool);
 }
 

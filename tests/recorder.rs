@@ -382,7 +382,7 @@ fn what_a_pool_is_told_is_recorded_in_order() {
         let path = folder.file("pool.mocrec");
         let moc = object(200, 150);
         moc.recorder_start(&path).unwrap();
-        let pool = CullingThreadpool::new(random.u32(0..3), 4, 4, 8).unwrap();
+        let pool = CullingThreadpool::with_processors(random.u32(0..3), 4, 4, 8, 3).unwrap();
         pool.set_buffer(moc);
         pool.wake_threads();
         let meshes: Vec<_> = (0..20).map(|_| RandomMesh::new(&mut random)).collect();

@@ -143,14 +143,14 @@ impl Driver<'_> {
                 [[1, 0, 1, 1], [1, 1, 0, 1], [0, 1, 1, 0], [1025, 1, 1, 1], [u32::MAX; 4]]
             {
                 pool = std::ptr::dangling_mut();
-                let status = MOC_ThreadpoolCreate(threads, bins_w, bins_h, jobs, &mut pool);
+                let status = MOC_ThreadpoolCreate(threads, bins_w, bins_h, jobs, 0, &mut pool);
                 ensure(status == MOC_Status::MOC_STATUS_INVALID_SIZE && pool.is_null(), || {
                     format!("ThreadpoolCreate({threads}, {bins_w}, {bins_h}, {jobs}): status {status:?}")
                 })?;
             }
-            MOC_ThreadpoolCreate(1, 1, 1, 1, &mut pool);
+            MOC_ThreadpoolCreate(1, 1, 1, 1, 0, &mut pool);
             let statuses = [
-                MOC_ThreadpoolCreate(1, 1, 1, 1, null_mut()),
+                MOC_ThreadpoolCreate(1, 1, 1, 1, 0, null_mut()),
                 MOC_ThreadpoolWakeThreads(null()),
                 MOC_ThreadpoolSuspendThreads(null()),
                 MOC_ThreadpoolFlush(null()),

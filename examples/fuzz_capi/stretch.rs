@@ -20,12 +20,15 @@ impl Driver<'_> {
         let mut bins = || if rng.u8(..12) == 0 { [u32::MAX, 65_536, 1000][rng.usize(..3)] } else { rng.u32(1..10) };
         let (bins_w, bins_h) = (bins(), bins());
         let (threads, max_jobs) = (rng.u32(..5), if rng.bool() { rng.u32(1..65) } else { rng.u32(1..4) });
+        // 0 asks the system; up to 5 threads run on machines with fewer processors, too.
+        let processors = rng.u32(..7);
         let mut handle = null_mut();
         // SAFETY: a place for the pool.
-        let status = unsafe { MOC_ThreadpoolCreate(threads, bins_w, bins_h, max_jobs, &mut handle) } as i32;
+        let status = unsafe { MOC_ThreadpoolCreate(threads, bins_w, bins_h, max_jobs, processors, &mut handle) } as i32;
         ensure(status == OK && !handle.is_null(), || format!("ThreadpoolCreate: status {status} for good numbers"))?;
         self.families[which].pool = Some(Pool::new(handle, rng.u8(..3) == 0));
-        let about = format!("a pool of {threads} threads, {bins_w}x{bins_h} bins, {max_jobs} jobs");
+        let about =
+            format!("a pool of {threads} threads on {processors} processors, {bins_w}x{bins_h} bins, {max_jobs} jobs");
         let mut done = self.attach(which);
         for k in 0..self.rng.usize(5..50) {
             if done.is_ok() {

@@ -62,17 +62,18 @@ unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, 
     unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
 }
 
-/// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). The threads sleep until
-/// MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to MOC_ThreadpoolDestroy.
+/// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
+/// besides the caller's, there are fewer threads, but one at least; 0: as many processors as the system says. The threads sleep
+/// until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to
+/// MOC_ThreadpoolDestroy.
 ///
 /// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
 /// each mesh; MOC_ThreadpoolFlush; tests.
 ///
-/// Calls that draw return at once. No more threads work at once than there are processors besides the caller's. They draw in
-/// `bins_w` times `bins_h` pieces of the screen (no more than four a thread that works, none smaller than 128x64 pixels, and
-/// rows of the screen first), in each in the order in which the calls came: the buffer gets the same bits as from one
-/// thread. At most `max_jobs` batches of calls are in flight; a caller who finds no room works until there is. Without
-/// threads (0), whoever flushes does the work.
+/// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
+/// thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
+/// came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
+/// in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
 ///
 /// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
 ///
@@ -87,13 +88,17 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     bins_w: u32,
     bins_h: u32,
     max_jobs: u32,
+    processors: u32,
     out: *mut *mut MOC_Threadpool,
 ) -> MOC_Status {
     guard(|| {
         check_out(out)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, core::ptr::null_mut()) };
-        let pool = CullingThreadpool::new(threads, bins_w, bins_h, max_jobs)?;
+        let pool = match processors {
+            0 => CullingThreadpool::new(threads, bins_w, bins_h, max_jobs)?,
+            _ => CullingThreadpool::with_processors(threads, bins_w, bins_h, max_jobs, processors)?,
+        };
         let state = Mutex::new(State { matrix: None, layout: VertexLayout::CLIP_SPACE.into() });
         // SAFETY: as above.
         unsafe { write(out, Box::into_raw(Box::new(MOC_Threadpool { pool, state }))) };

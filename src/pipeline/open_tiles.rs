@@ -22,9 +22,10 @@ pub(super) struct OpenTiles {
     /// Of those that were located: where their planes are, in bytes, and one more where they are covered wholly.
     located: List<u32>,
     number: List<u32>,
-    /// First column of pixels; and of sub-tiles, from the box's first tile.
+    /// First column of pixels.
     left: List<u32>,
-    column: List<f32>,
+    /// First column of sub-tiles, from the box's first tile.
+    sub_column: List<f32>,
 }
 
 /// An open tile.
@@ -38,7 +39,7 @@ pub(super) struct Tile<T: Simd> {
     /// Its first column of pixels.
     pub left: u32,
     /// Its columns of sub-tiles, from the box's first tile.
-    pub columns: T::F,
+    pub sub_columns: T::F,
 }
 
 impl Strips<'_> {
@@ -70,10 +71,10 @@ impl Strips<'_> {
         // lanes were located.
         unsafe {
             let (strip, x) = unpack(lists.tiles.named.get_unchecked(k).assume_init());
-            let columns = t.and(t.iota(), t.i(3));
+            let sub_columns = t.and(t.iota(), t.i(3));
             if T::LANES == MAX_LANES {
                 let at = lists.tiles.located.get_unchecked(k).assume_init();
-                let column = lists.tiles.column.get_unchecked(k).assume_init();
+                let first = lists.tiles.sub_column.get_unchecked(k).assume_init();
                 return Tile {
                     strip,
                     planes: at & !1,
@@ -81,30 +82,30 @@ impl Strips<'_> {
                     number: lists.tiles.number.get_unchecked(k).assume_init(),
                     left: lists.tiles.left.get_unchecked(k).assume_init(),
                     // Small integers: exact.
-                    columns: t.add(t.f(column), t.to_f(columns)),
+                    sub_columns: t.add(t.f(first), t.to_f(sub_columns)),
                 };
             }
             let of = |list: &Words| list.get_unchecked(strip).assume_init();
-            let column = (4 * x).wrapping_sub(of(&lists.sub_column));
+            let first = (4 * x).wrapping_sub(of(&lists.sub_column));
             Tile {
                 strip,
                 planes: of(&lists.planes) + x * bytes_of::<T, S>(),
                 whole: x.wrapping_sub(of(&lists.inner_first)) < of(&lists.inner),
                 number: of(&lists.index) + x,
                 left: x * TILE_WIDTH,
-                columns: t.to_f(t.or(t.i(column as i32), columns)),
+                sub_columns: t.to_f(t.or(t.i(first as i32), sub_columns)),
             }
         }
     }
 
-    /// Finds out where the open tiles are, a vector at a time; where there is no cheap look-up in 32 numbers, it costs
-    /// less tile by tile, see `tile`.
+    /// Finds out where the open tiles are, a vector at a time.
     #[inline(always)]
     pub(super) fn locate<T: Simd, S: TileStep<T>>(&mut self, t: T, tiles: usize) {
         let lists = &mut *self.lists;
         let mut k = 0;
         while k < tiles {
-            // SAFETY: the tiles up to `tiles` were listed, of strips that were bounded; there is room for a vector after them.
+            // SAFETY: the tiles up to `tiles` were listed, and a vector after them was written; of the lists of strips all 32 words
+            // were. There is room for a vector after the tiles.
             unsafe {
                 let word = t.load_i(lists.tiles.named.as_ptr().add(k).cast());
                 let (strip, x) =
@@ -118,7 +119,7 @@ impl Strips<'_> {
                 t.store_i(lists.tiles.number.as_mut_ptr().add(k).cast(), t.add_i(of(&lists.index), x));
                 t.store_i(lists.tiles.left.as_mut_ptr().add(k).cast(), t.shl::<5>(x));
                 let column = t.sub_i(t.shl::<2>(x), of(&lists.sub_column));
-                t.store_f(lists.tiles.column.as_mut_ptr().add(k).cast(), t.to_f(column));
+                t.store_f(lists.tiles.sub_column.as_mut_ptr().add(k).cast(), t.to_f(column));
             }
             k += T::LANES;
         }

@@ -87,9 +87,17 @@ pub(super) struct Open {
 
 impl<'a> Strips<'a> {
     #[inline(always)]
-    pub fn new(lists: &'a mut MaybeUninit<Lists>, triangles: u32) -> Self {
+    pub fn new<T: Simd>(t: T, lists: &'a mut MaybeUninit<Lists>, triangles: u32) -> Self {
         // SAFETY: every field is an array of `MaybeUninit`.
         let lists = unsafe { lists.assume_init_mut() };
+        if T::LANES == MAX_LANES {
+            // Vectors of sixteen lanes look up in all 32, of which as few as one vector is bounded.
+            let Lists { planes, index, inner_first, inner, sub_column, .. } = lists;
+            for list in [planes, index, inner_first, inner, sub_column] {
+                // SAFETY: a list has room for three vectors.
+                unsafe { t.store_i(list.as_mut_ptr().add(T::LANES).cast(), t.i(0)) };
+            }
+        }
         Self { lists, todo: triangles, row: 0, listed: 0, next: 0 }
     }
 
@@ -326,6 +334,11 @@ impl<'a> Strips<'a> {
                     lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
                 }
             }
+        }
+        if T::LANES == MAX_LANES {
+            // Whole vectors are located.
+            // SAFETY: there is room for a vector after the last.
+            unsafe { t.store_i(self.lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.i(0)) };
         }
         Open { strips, tiles }
     }

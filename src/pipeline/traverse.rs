@@ -60,7 +60,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
     let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Lists { strips, rows } = unsafe { lists.assume_init_mut() };
-    let mut strips = Strips::new(strips, alive.lanes);
+    let mut strips = Strips::new(t, strips, alive.lanes);
     // By value, for who stores into a tile might have changed what stands behind a reference.
     let (first_planes, first_least, pitch) = (buffer.planes(), buffer.least(), buffer.tiles_w() as usize);
     while let Some(open) = strips.next::<T, S>(t, buffer, clip, batch) {
@@ -88,7 +88,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
                 (t.load_i(left.cast()), t.load_i(right.cast()), t.load_f((&raw const (*rows).z).cast()))
             };
             let (across, clamp) = strips.slope(tile.strip);
-            let plane = t.add(z, t.mul(t.f(across), tile.columns));
+            let plane = t.add(z, t.mul(t.f(across), tile.sub_columns));
             let clamp = t.f(clamp);
             let depth = if S::DRAWS { t.max(plane, clamp) } else { t.min(plane, clamp) };
             let row = || strips.place(tile.strip).1 * height::<T>();

@@ -20,8 +20,6 @@ pub(super) struct Crew {
     progress: Condvar,
     /// Counts what was finished.
     finished: Glance,
-    /// So many threads of the pool work at once.
-    most: usize,
 }
 
 struct State {
@@ -29,8 +27,7 @@ struct State {
     target: Option<Arc<Target>>,
     /// Memory to be used again.
     spare: Vec<Kept>,
-    /// Threads that work or look for work; those that wait for it, and how many of these were woken and are not awake yet.
-    awake: usize,
+    /// Threads that wait for work, and how many of them were woken and are not awake yet.
     idle: usize,
     woken: usize,
     /// Threads that wait for progress.
@@ -40,22 +37,19 @@ struct State {
 }
 
 impl Crew {
-    /// `most`: threads beyond so many sleep on, however much there is to do.
-    pub fn new(max_batches: usize, most: usize) -> Self {
+    pub fn new(max_batches: usize) -> Self {
         let schedule = Schedule::new(1, max_batches);
         let state = State {
             schedule,
             target: None,
             spare: Vec::new(),
-            awake: 0,
             idle: 0,
             woken: 0,
             waiting: 0,
             suspended: true,
             stopped: false,
         };
-        let (work, progress) = (Condvar::new(), Condvar::new());
-        Self { state: Mutex::new(state), work, progress, finished: Glance::default(), most }
+        Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new(), finished: Glance::default() }
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -66,15 +60,14 @@ impl Crew {
     /// The way of a thread of the pool, until [`Self::stop`].
     pub fn work(&self, number: usize) {
         let mut state = self.lock();
-        state.awake += 1;
         while !state.stopped {
             let task = if state.suspended { None } else { state.schedule.claim(number) };
             state = match task {
                 Some(task) => self.perform(state, task),
                 None => {
-                    (state.awake, state.idle) = (state.awake - 1, state.idle + 1);
+                    state.idle += 1;
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
-                    (state.awake, state.idle) = (state.awake + 1, state.idle - 1);
+                    state.idle -= 1;
                     state.woken = state.woken.saturating_sub(1);
                     state
                 }
@@ -82,11 +75,10 @@ impl Crew {
         }
     }
 
-    /// Wakes a thread if there is work, one that sleeps, and a processor for it. Not twice: waking takes a system call, and the
-    /// thread tens of microseconds, in which others do what it was woken for.
+    /// Wakes a thread if there is work and one that sleeps. Not twice: waking takes a system call, and the thread tens of
+    /// microseconds, in which others do what it was woken for.
     fn wake(&self, state: &mut State) {
-        let sleeps = state.idle > state.woken && state.awake + state.woken < self.most;
-        if sleeps && !state.suspended && state.schedule.has_work() {
+        if state.idle > state.woken && !state.suspended && state.schedule.has_work() {
             state.woken += 1;
             self.work.notify_one();
         }
@@ -210,9 +202,8 @@ impl Crew {
     }
 
     pub fn set_suspended(&self, suspended: bool) {
-        let mut state = self.lock();
-        state.suspended = suspended;
-        self.wake(&mut state);
+        self.lock().suspended = suspended;
+        self.work.notify_all();
     }
 
     /// Ends [`Self::work`].

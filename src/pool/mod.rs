@@ -12,14 +12,16 @@
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
 //! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
-//! to do, it looks about for 20 microseconds before it sleeps. Threads beyond the processors sleep on: they would only take turns
-//! with the others, and interrupt one that holds a bin.
+//! to do, it looks about for 20 microseconds before it sleeps. Threads beyond the processors are not started: they would only take
+//! turns with the others, and interrupt one that holds a bin.
 
 mod crew;
 mod grid;
 mod schedule;
 mod sync;
 mod target;
+#[cfg(test)]
+mod tests;
 
 use core::marker::PhantomData;
 use core::ptr::NonNull;
@@ -80,10 +82,10 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]. No more of them work at once than there are
-    /// processors besides the caller's. The screen is cut into `bins_w` times `bins_h` bins, but into no more than four a thread
-    /// that works, and none smaller than 128 by 64 pixels; rows of the screen first, for threads side by side would write to
-    /// the same cache lines. At most `max_jobs` batches of calls are in flight. Without threads, whoever flushes does the work.
+    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]; of fewer where there are fewer processors besides
+    /// the caller's, but of one at least. The screen is cut into `bins_w` times `bins_h` bins, but into no more than four a
+    /// thread, and none smaller than 128 by 64 pixels; rows of the screen first, for threads side by side would write to the
+    /// same cache lines. At most `max_jobs` batches of calls are in flight. Without threads (0), whoever flushes does the work.
     ///
     /// # Errors
     /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
@@ -93,7 +95,7 @@ impl CullingThreadpool {
         Self::with_processors(threads, bins_w, bins_h, max_jobs, processors)
     }
 
-    /// The same where so many processors are left to the pool and its caller, whatever the system says.
+    /// The same where the pool and its caller have so many processors, whatever the system says.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -107,11 +109,11 @@ impl CullingThreadpool {
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || threads > MAX_THREADS {
             return Err(Error::InvalidSize);
         }
-        let at_once = threads.min(processors.saturating_sub(1).max(1));
+        let threads = threads.min(processors.saturating_sub(1).max(1));
         let mut pool = Self {
-            crew: Arc::new(Crew::new(max_jobs as usize, at_once as usize)),
+            crew: Arc::new(Crew::new(max_jobs as usize)),
             threads: Vec::new(),
-            bins: Bins { wide: bins_w, high: bins_h, most: at_once.saturating_mul(BINS_A_THREAD) },
+            bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
             near: AtomicU32::new(f32::NAN.to_bits()),
             target: RwLock::new(None),
             recording: Mutex::new(()),

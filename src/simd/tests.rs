@@ -120,7 +120,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let table_index = s.and(index, s.i(3));
             results.push(floats(s.lookup(input.a.as_ptr(), table_index)));
             let far: Vec<f32> = (0..4 * N).map(|x| x as f32).collect();
-            results.push(floats(s.lookup_32(far.as_ptr(), s.and(index, s.i(31)))));
+            results.push(floats(s.lookup_32(far.as_ptr(), s.and(i, s.i(31)))));
             results.push(floats(s.load_strided(far.as_ptr().cast::<u8>().add(8 * first), 8)));
             let triangles: Vec<u32> = (0..3 * N as u32).collect();
             results.extend(s.load_triangles(triangles.as_ptr().add(3 * first)).map(lanes));
