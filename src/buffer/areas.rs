@@ -64,15 +64,34 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
     debug_assert!(clip.x0.is_multiple_of(AREA_TILES_W) && clip.y0.is_multiple_of(AREA_TILES_H));
     let tiles = (clip.x1 - clip.x0) as usize;
     let areas = tiles.div_ceil(AREA_TILES_W as usize);
-    let mut row = [f32::MAX; ROW];
+    let mut row = [0.0_f32; ROW];
+    // What is after the last tile changes no least.
+    for x in (tiles.next_multiple_of(S::LANES)..(areas * AREA_TILES_W as usize).next_multiple_of(4 * S::LANES))
+        .step_by(S::LANES)
+    {
+        // SAFETY: the array has room for four vectors after the last tile of the widest row.
+        unsafe { s.store_f(row.as_mut_ptr().add(x), s.f(f32::MAX)) };
+    }
     for y0 in (clip.y0..clip.y1).step_by(AREA_TILES_H as usize) {
         let y1 = (y0 + AREA_TILES_H).min(clip.y1);
         for x in (0..tiles).step_by(S::LANES) {
-            let mut least = s.f(f32::MAX);
-            for y in y0..y1 {
+            let first = buffer.least_of(clip.x0 + x as u32, y0);
+            let of_row = |y: u32| {
+                let p = first.wrapping_add((y * buffer.tiles_w) as usize);
                 // SAFETY: tiles of the rectangle, and no others: beside them another thread may be writing.
-                let of_row = unsafe { s.load_some(buffer.least_of(clip.x0 + x as u32, y).cast(), tiles - x) };
-                least = s.min(least, s.float_of_bits(of_row));
+                unsafe {
+                    if x + S::LANES <= tiles { s.load_f(p) } else { s.float_of_bits(s.load_some(p.cast(), tiles - x)) }
+                }
+            };
+            let mut least = of_row(0);
+            if y1 - y0 == AREA_TILES_H {
+                for y in 1..AREA_TILES_H {
+                    least = s.min(least, of_row(y));
+                }
+            } else {
+                for y in 1..y1 - y0 {
+                    least = s.min(least, of_row(y));
+                }
             }
             let least = s.select(s.first(tiles - x), least, s.f(f32::MAX));
             // SAFETY: the array has room for a vector after the last tile of the widest row.

@@ -63,6 +63,9 @@ pub(super) struct Lists {
     across: Floats,
     clamp: Floats,
     pub(super) sub_column: Words,
+    /// Of each triangle: its lane and first row, and how many rows it has.
+    triangle: [MaybeUninit<u32>; MAX_LANES],
+    rows: [MaybeUninit<u32>; MAX_LANES],
     /// Strips with an open tile.
     opened: [MaybeUninit<u32>; STRIPS + 1],
     pub(super) tiles: OpenTiles,
@@ -87,9 +90,27 @@ pub(super) struct Open {
 
 impl<'a> Strips<'a> {
     #[inline(always)]
-    pub fn new<T: Simd>(t: T, lists: &'a mut MaybeUninit<Lists>, triangles: u32) -> Self {
+    pub fn new<T: Simd>(
+        t: T,
+        lists: &'a mut MaybeUninit<Lists>,
+        clip: TileRect,
+        batch: &Batch,
+        triangles: u32,
+    ) -> Self {
         // SAFETY: every field is an array of `MaybeUninit`.
         let lists = unsafe { lists.assume_init_mut() };
+        // SAFETY: the arrays hold a vector; setup stored the tiles of every box.
+        unsafe {
+            let rows_of = |tiles: &Lanes<u32>| {
+                let row = t.load_i(tiles.as_ptr());
+                if height::<T>() == 1 { row } else { t.sra::<1>(row) }
+            };
+            let first = t.max_i(rows_of(&batch.tile_y0), t.i((clip.y0 / height::<T>()) as i32));
+            let last = t.min_i(rows_of(&batch.tile_y1), t.i(clip.y1.div_ceil(height::<T>()) as i32 - 1));
+            let rows = t.max_i(t.sub_i(t.add_i(last, t.i(1)), first), t.i(0));
+            t.store_i(lists.triangle.as_mut_ptr().cast(), t.or(t.shl::<PLACE_SHIFT>(t.iota()), first));
+            t.store_i(lists.rows.as_mut_ptr().cast(), rows);
+        }
         if T::LANES == MAX_LANES {
             // Vectors of sixteen lanes look up in all 32, of which as few as one vector is bounded.
             let Lists { planes, index, inner_first, inner, sub_column, .. } = lists;
@@ -145,7 +166,7 @@ impl<'a> Strips<'a> {
         batch: &Batch,
     ) -> Option<Open> {
         if self.next == self.listed {
-            self.list::<T>(t, clip, batch);
+            self.list::<T>(t);
             if self.listed == 0 {
                 return None;
             }
@@ -165,22 +186,18 @@ impl<'a> Strips<'a> {
 
     /// Lists the strips of the next triangles.
     #[inline(always)]
-    fn list<T: Simd>(&mut self, t: T, clip: TileRect, batch: &Batch) {
-        let (begin, end) = (clip.y0 / height::<T>(), clip.y1.div_ceil(height::<T>()));
+    fn list<T: Simd>(&mut self, t: T) {
         let mut listed = 0;
-        let mut last = 0;
+        let mut place = 0;
         while self.todo != 0 && listed < STRIPS {
-            let lane = self.todo.trailing_zeros();
-            let k = lane as usize;
-            let [_, _, y0, y1] = batch.tiles(k);
-            let first = (y0 / height::<T>()).max(begin);
-            let rows = (y1 / height::<T>() + 1).min(end).saturating_sub(first);
-            last = lane << PLACE_SHIFT | (first + self.row);
-            // SAFETY: there is room for a vector after `STRIPS`.
-            unsafe {
-                let place = self.lists.place.as_mut_ptr().add(listed).cast();
-                t.store_i(place, t.add_i(t.i(last as i32), t.iota()));
-            }
+            let lane = self.todo.trailing_zeros() as usize;
+            // SAFETY: `new` wrote what it found of every lane; there is room for a vector after `STRIPS`.
+            let rows = unsafe {
+                place = self.lists.triangle.get_unchecked(lane).assume_init() + self.row;
+                let places = t.add_i(t.i(place as i32), t.iota());
+                t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), places);
+                self.lists.rows.get_unchecked(lane).assume_init()
+            };
             let taken = (rows - self.row).min(T::LANES as u32).min((STRIPS - listed) as u32);
             listed += taken as usize;
             self.row += taken;
@@ -189,8 +206,9 @@ impl<'a> Strips<'a> {
                 self.todo &= self.todo - 1;
             }
         }
+        // What is bounded beyond the last is any strip.
         // SAFETY: there is room for a vector after `STRIPS`.
-        unsafe { t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), t.i(last as i32)) };
+        unsafe { t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), t.i(place as i32)) };
         (self.listed, self.next) = (listed, 0);
     }
 
@@ -296,8 +314,19 @@ impl<'a> Strips<'a> {
     /// Lists open tiles, as many as there is room for.
     #[inline(always)]
     fn open<T: Simd, S: TileStep<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect) -> Open {
-        let whole = clip == buffer.all_tiles();
-        let (mut strips, mut tiles, mut named) = (0, 0, usize::MAX);
+        if clip == buffer.all_tiles() {
+            self.open_inside::<T, S, true>(t, buffer)
+        } else {
+            self.open_inside::<T, S, false>(t, buffer)
+        }
+    }
+
+    /// The same where the clip is the `WHOLE` buffer, or not: then another thread may be writing beside it.
+    #[inline(always)]
+    fn open_inside<T: Simd, S: TileStep<T>, const WHOLE: bool>(&mut self, t: T, buffer: &Buffer) -> Open {
+        let (mut strips, mut tiles) = (0, 0);
+        // Open tiles of a wide strip, which comes in several goes and is named after the last.
+        let mut before = 0;
         while self.next < self.listed && tiles < TILES {
             let k = self.next;
             let lists = &mut *self.lists;
@@ -309,32 +338,31 @@ impl<'a> Strips<'a> {
                 let count = lists.count.get_unchecked(k).assume_init();
                 let index = lists.index.get_unchecked(k).assume_init();
                 let least = buffer.least().add((index + (first & LOW)) as usize);
-                let inside = t.first(count as usize);
                 let of = |p: *const f32| {
-                    // Beside the clip's tiles another thread may be writing.
-                    if whole { t.load_f(p) } else { t.float_of_bits(t.load_some(p.cast(), count as usize)) }
+                    if WHOLE { t.load_f(p) } else { t.float_of_bits(t.load_some(p.cast(), count as usize)) }
                 };
                 let mut open = S::open(t, of(least), t.f(lists.upper.get_unchecked(k).assume_init()));
                 if height::<T>() == 2 {
                     let lower = of(least.add(buffer.tiles_w() as usize));
                     open = t.or_m(open, S::open(t, lower, t.f(lists.lower.get_unchecked(k).assume_init())));
                 }
-                let tile = t.add_i(t.i(first as i32), t.iota());
-                let n = t.compress(lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.and_m(open, inside), tile);
+                let named = lists.tiles.named.as_mut_ptr().add(tiles).cast();
+                let n = t.list_lanes(named, open, count as usize, first);
                 tiles += n;
-                // A wide strip comes in several goes and is named once: there are no more names than strips.
                 lists.opened.get_unchecked_mut(strips).write(k as u32);
-                strips += usize::from(n != 0 && named != k);
-                named = if n != 0 { k } else { named };
                 if count <= T::LANES as u32 {
+                    strips += usize::from(before + n != 0);
+                    before = 0;
                     self.next += 1;
                 } else {
                     // The rest comes in another go.
+                    before += n;
                     lists.first.get_unchecked_mut(k).write(first + T::LANES as u32);
                     lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
                 }
             }
         }
+        strips += usize::from(before != 0);
         if T::LANES == MAX_LANES {
             // Whole vectors are located.
             // SAFETY: there is room for a vector after the last.

@@ -2,6 +2,7 @@
 
 use core::arch::x86_64::*;
 
+use super::compress::EIGHT_LANES;
 use super::{Apart, Job, Simd, record, store_relaxed};
 
 #[derive(Clone, Copy)]
@@ -20,26 +21,6 @@ pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
 #[inline(never)]
 unsafe fn apart<J: Apart<Avx2>>(s: Avx2, job: J) -> J::Output {
     job.run(s)
-}
-
-/// For each mask, the lanes that it keeps, first to last, and then lane 0.
-static COMPRESS: [[u8; 8]; 256] = compress_table();
-
-const fn compress_table() -> [[u8; 8]; 256] {
-    let mut table = [[0; 8]; 256];
-    let mut mask = 0;
-    while mask < 256 {
-        let (mut lane, mut n) = (0, 0);
-        while lane < 8 {
-            if mask >> lane & 1 == 1 {
-                table[mask][n] = lane as u8;
-                n += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
 }
 
 /// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, for which the
@@ -218,10 +199,15 @@ impl Simd for Avx2 {
         // SAFETY: the token, and the caller's contract; the mask has eight bits.
         unsafe {
             let bits = _mm256_movemask_ps(m) as usize;
-            let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(COMPRESS.as_ptr().add(bits).cast()));
+            let order = self.load_bytes(EIGHT_LANES.as_ptr().add(bits).cast());
             _mm256_storeu_si256(p.cast(), _mm256_permutevar8x32_epi32(x, order));
             bits.count_ones() as usize
         }
+    }
+    #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> __m256i {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm256_cvtepu8_epi32(_mm_loadl_epi64(p.cast())) }
     }
     #[inline(always)]
     fn prefetch(self, p: *const u32) {

@@ -261,6 +261,11 @@ impl Simd for Avx512 {
         }
     }
     #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> __m512i {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm512_cvtepu8_epi32(_mm_loadu_si128(p.cast())) }
+    }
+    #[inline(always)]
     fn add(self, a: Self::F, b: Self::F) -> __m512 {
         // SAFETY: the token proves the instruction set.
         unsafe { _mm512_add_ps(a, b) }

@@ -1,8 +1,30 @@
-//! Tables of byte shuffles that bring the lanes of a mask together, for instruction sets without such an instruction.
+//! Tables that bring the lanes of a mask together, for instruction sets without such an instruction.
+
+/// For each mask, the lanes that it keeps, first to last, and then lane 0.
+pub(super) static EIGHT_LANES: [[u8; 8]; 256] = eight_lanes();
+
+const fn eight_lanes() -> [[u8; 8]; 256] {
+    let mut table = [[0; 8]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut n) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                table[mask][n] = lane as u8;
+                n += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+}
 
 /// For each mask, the bytes of the lanes that it keeps, first to last.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(super) static FOUR_LANES: [[u8; 16]; 16] = four_lanes();
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 const fn four_lanes() -> [[u8; 16]; 16] {
     let mut table = [[0; 16]; 16];
     let mut mask = 0;

@@ -14,7 +14,6 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod compress;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -28,6 +27,7 @@ mod tests;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::Implementation;
+use compress::EIGHT_LANES;
 
 /// No vector has more lanes.
 pub(crate) const MAX_LANES: usize = 16;
@@ -123,6 +123,28 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// `p` can be written for `LANES` values, whatever the mask.
     unsafe fn compress(self, p: *mut u32, m: Self::M, x: Self::I) -> usize;
+
+    /// `LANES` bytes, as numbers.
+    /// # Safety
+    /// `p` can be read for as many bytes.
+    unsafe fn load_bytes(self, p: *const u8) -> Self::I;
+    /// Writes `first` plus its number for each of the first `n` lanes that is in `m`, without gaps, and returns how many there are.
+    /// # Safety
+    /// As [`Self::compress`].
+    #[inline(always)]
+    unsafe fn list_lanes(self, p: *mut u32, m: Self::M, n: usize, first: u32) -> usize {
+        // SAFETY: the caller's contract; eight bits name a list of the table.
+        unsafe {
+            if Self::LANES == 8 {
+                let bits = self.mask_bits(m) & ((1 << n.min(8)) - 1);
+                let lanes = self.load_bytes(EIGHT_LANES.as_ptr().add(bits as usize).cast());
+                self.store_i(p, self.add_i(lanes, self.i(first as i32)));
+                bits.count_ones() as usize
+            } else {
+                self.compress(p, self.and_m(m, self.first(n)), self.add_i(self.i(first as i32), self.iota()))
+            }
+        }
+    }
 
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;

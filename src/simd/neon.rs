@@ -144,6 +144,14 @@ impl Simd for Neon {
         [v.0, v.1, v.2, v.3]
     }
     #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> int32x4_t {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let bytes = vcreate_u8(u64::from(p.cast::<u32>().read_unaligned()));
+            vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(vmovl_u8(bytes))))
+        }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: uint32x4_t, x: int32x4_t) -> usize {
         // SAFETY: the token, and the caller's contract.
         unsafe {

@@ -148,6 +148,12 @@ impl<S: Simd> Simd for Pair<S> {
         }
     }
 
+    #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> Self::I {
+        // SAFETY: the caller's contract, half by half.
+        unsafe { [self.0.load_bytes(p), self.0.load_bytes(p.add(S::LANES))] }
+    }
+
     pairwise! {
         trunc(a: F) -> I;
         sub_sat(a: I, b: I) -> I;

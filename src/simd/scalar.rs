@@ -177,6 +177,11 @@ impl Simd for Scalar4 {
         lanes!(k => [v[0][k], v[1][k], v[2][k], v[3][k]])
     }
     #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> [i32; 4] {
+        // SAFETY: the caller's contract.
+        unsafe { p.cast::<[u8; 4]>().read().map(i32::from) }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: [bool; 4], x: [i32; 4]) -> usize {
         let mut n = 0;
         for lane in 0..4 {

@@ -422,6 +422,14 @@ impl Simd for Sse2 {
         }
     }
     #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> __m128i {
+        // SAFETY: the token, and the caller's contract.
+        unsafe {
+            let (bytes, zero) = (_mm_cvtsi32_si128(p.cast::<i32>().read_unaligned()), _mm_setzero_si128());
+            _mm_unpacklo_epi16(_mm_unpacklo_epi8(bytes, zero), zero)
+        }
+    }
+    #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m128, x: __m128i) -> usize {
         // SAFETY: the token, and the caller's contract.
         unsafe {
@@ -491,6 +499,11 @@ impl Simd for Sse41 {
                 at(_mm_extract_epi32::<3>(index)),
             )
         }
+    }
+    #[inline(always)]
+    unsafe fn load_bytes(self, p: *const u8) -> __m128i {
+        // SAFETY: the token, and the caller's contract.
+        unsafe { _mm_cvtepu8_epi32(_mm_cvtsi32_si128(p.cast::<i32>().read_unaligned())) }
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m128, x: __m128i) -> usize {
