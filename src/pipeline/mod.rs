@@ -32,6 +32,8 @@ mod scratch;
 mod setup;
 mod strips;
 mod survivors;
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;
 mod tile_step;
 mod traverse;
 
@@ -128,11 +130,8 @@ pub(crate) unsafe fn draw_list(
     // A vector of sixteen lanes takes two tiles, one below the other, and may not take one that is outside.
     let whole_blocks =
         scissor.y0.is_multiple_of(2) && (scissor.y1.is_multiple_of(2) || scissor.y1 == buffer.all_tiles().y1);
-    let implementation = match implementation {
-        Implementation::Avx512 if !whole_blocks => Implementation::Avx2,
-        other => other,
-    };
-    simd::run(implementation, DrawList { buffer, list, scissor })
+    let job = DrawList { buffer, list, scissor };
+    if whole_blocks { simd::run(implementation, job) } else { simd::run_on_eight_lanes(implementation, job) }
 }
 
 /// Projects a mesh and keeps what may be drawn, for some pieces of the screen, after what was kept before. `sift`: without

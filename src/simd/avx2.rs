@@ -15,6 +15,16 @@ pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()))
 }
 
+/// Sixteen lanes, as AVX-512 has.
+///
+/// # Safety
+/// As [`enter`].
+#[cfg(test)]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn enter_sixteen_lanes<J: Job>(job: J) -> J::Output {
+    job.run(super::pair::Pair(Avx2(())))
+}
+
 /// # Safety
 /// As [`enter`].
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]

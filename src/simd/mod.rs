@@ -319,6 +319,9 @@ pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: an object's implementation is one of `available`, which asked the processor.
         Implementation::Avx512 => unsafe { avx512::enter(job) },
+        #[cfg(all(test, target_arch = "x86_64"))]
+        // SAFETY: as above.
+        Implementation::Avx2 if SIXTEEN_LANES.get() => unsafe { avx2::enter_sixteen_lanes(job) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
         Implementation::Avx2 => unsafe { avx2::enter(job) },
@@ -331,6 +334,34 @@ pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
         Implementation::Neon => neon::enter(job),
         _ => scalar::enter(job),
     }
+}
+
+/// The same on vectors of eight lanes, on which every implementation gives the same bits.
+#[inline]
+pub(crate) fn run_on_eight_lanes<J: Job>(implementation: Implementation, job: J) -> J::Output {
+    match implementation {
+        #[cfg(target_arch = "x86_64")]
+        Implementation::Avx512 => run(Implementation::Avx2, job),
+        #[cfg(all(test, target_arch = "x86_64"))]
+        // SAFETY: an object's implementation is one of `available`, which asked the processor.
+        Implementation::Avx2 => unsafe { avx2::enter(job) },
+        other => run(other, job),
+    }
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+std::thread_local! {
+    static SIXTEEN_LANES: core::cell::Cell<bool> = const { core::cell::Cell::new(false) };
+}
+
+/// Does `what` with sixteen lanes, two vectors side by side, in place of AVX2's eight: what is only for such vectors is tested
+/// where the processor has none.
+#[cfg(all(test, target_arch = "x86_64"))]
+pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
+    SIXTEEN_LANES.set(true);
+    let result = what();
+    SIXTEEN_LANES.set(false);
+    result
 }
 
 /// What this processor can run, the plainest first.

@@ -215,7 +215,13 @@ impl<S: Simd> Simd for Pair<S> {
     #[inline(always)]
     unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F) {
         // SAFETY: the caller's contract.
-        unsafe { self.0.store_least(p, pitch, self.0.min(a[0], a[1])) }
+        unsafe {
+            if S::LANES < 8 {
+                return self.0.store_least(p, pitch, self.0.min(a[0], a[1]));
+            }
+            self.0.store_least(p, pitch, a[0]);
+            self.0.store_least(p.add(pitch), pitch, a[1]);
+        }
     }
     #[inline(always)]
     fn mask_bits(self, m: Self::M) -> u32 {
