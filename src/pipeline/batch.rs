@@ -61,6 +61,8 @@ pub(super) struct Batch {
     pub tile_x1: Lanes<u32>,
     pub tile_y0: Lanes<u32>,
     pub tile_y1: Lanes<u32>,
+    /// Of boxes of a few tiles, which are open (see `boxes.rs`).
+    pub open: Lanes<u32>,
     /// Rows and columns of pixels of the bounding box, the last outside.
     pub row0: Lanes<f32>,
     pub row1: Lanes<f32>,

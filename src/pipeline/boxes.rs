@@ -2,7 +2,8 @@
 //!
 //! A box of one or two columns and rows of tiles is compared with the least depths of its four corners' tiles, which are
 //! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same
-//! gathers. Without areas half of a castle's triangles that got edges had no open tile.
+//! gathers. Without areas half of a castle's triangles that got edges had no open tile. Of the smaller ones it is then known
+//! which tiles are open (see `few_tiles.rs`).
 
 use super::setup::{Purpose, VERTEX_MARGIN};
 use super::survivors::Corner;
@@ -71,7 +72,8 @@ impl<S: Simd> Boxes<S> {
         }
     }
 
-    /// Boxes whose triangles are hidden inside of a rectangle of tiles, or have nothing there.
+    /// Boxes whose triangles are hidden inside of a rectangle of tiles, or have nothing there; and which of a few tiles are open,
+    /// if that was looked at.
     ///
     /// How current areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
     /// would tell, and it leaves them out.
@@ -86,7 +88,7 @@ impl<S: Simd> Boxes<S> {
         buffer: &Buffer,
         Look { clip, areas: with_areas }: Look,
         purpose: Purpose,
-    ) -> S::M {
+    ) -> (S::M, Option<OpenOfFew<S>>) {
         let nearest = self.nearest;
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
@@ -114,6 +116,7 @@ impl<S: Simd> Boxes<S> {
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
         let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
+        let mut open = None;
         // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile. After
         // the last tile and the last area there is room; beside a rectangle, another thread may be writing.
         let least = unsafe {
@@ -127,10 +130,27 @@ impl<S: Simd> Boxes<S> {
                 let [top, beside_top] = s.gather_pairs(buffer.least(), at(top, left));
                 let [bottom, beside_bottom] = s.gather_pairs(buffer.least(), at(bottom, left));
                 let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
-                s.select(s.eq_i(left, right), least, s.min(least, beside))
+                let (narrow, low) = (s.eq_i(left, right), s.eq_i(y0, y1));
+                if S::LANES == 8 && purpose == Purpose::Draw {
+                    let bit = |least: S::F, not: S::M, bit: i32| {
+                        s.select_i(s.and_not_m(not, s.lt(least, nearest)), s.i(bit), s.i(0))
+                    };
+                    let none = s.first(0);
+                    let upper = s.or(bit(top, none, 1), bit(beside_top, narrow, 2));
+                    let lower = s.or(bit(bottom, low, 4), bit(beside_bottom, s.or_m(narrow, low), 8));
+                    open = Some(OpenOfFew { few: tiles, open: s.or(upper, lower) });
+                }
+                s.select(narrow, least, s.min(least, beside))
             }
         };
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))
+        (s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden)), open)
     }
+}
+
+/// The open tiles of boxes of up to two columns and rows: 1 and 2 are the upper row's, 4 and 8 the lower row's.
+pub(super) struct OpenOfFew<S: Simd> {
+    /// Boxes that are as small.
+    pub few: S::M,
+    pub open: S::I,
 }

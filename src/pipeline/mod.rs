@@ -22,6 +22,7 @@ mod chunk;
 mod clip;
 mod cull;
 mod edges;
+mod few_tiles;
 mod kept;
 mod last_step;
 mod list;
