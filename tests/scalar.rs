@@ -129,3 +129,24 @@ fn bins_merging_and_transforming() {
         assert_eq!(covered(&moc), binned);
     });
 }
+
+/// Also at the far corner, where there is no tile that could be looked at.
+#[test]
+fn an_empty_scissor_draws_nothing() {
+    every(|mut moc| {
+        moc.set_resolution(4096, 64).unwrap();
+        let wall = [[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]];
+        let vertices = Vertices::from_clip_space(&wall);
+        let mut memory = [0.0; 64 * 9];
+        let mut lists = [TriList::new(&mut memory)];
+        moc.bin_triangles(vertices, &[0, 1, 2], &mut lists, 1, 1, &both_sides()).unwrap();
+        assert!(!lists[0].is_empty());
+        for (x, y) in [(0, 0), (0, 64), (4096, 0), (4096, 64), (2048, 32)] {
+            let scissor = ScissorRect { min_x: x, min_y: y, max_x: x, max_y: y };
+            moc.render_trilist(&lists[0], Some(scissor)).unwrap();
+        }
+        let mut depth = vec![0.0; 4096 * 64];
+        moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+        assert!(depth.iter().all(|d| *d < 0.0));
+    });
+}

@@ -84,6 +84,7 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
                 }
             };
             let mut least = of_row(0);
+            // Most have eight rows, for which nothing is counted.
             if y1 - y0 == AREA_TILES_H {
                 for y in 1..AREA_TILES_H {
                     least = s.min(least, of_row(y));
@@ -119,45 +120,72 @@ mod tests {
     use crate::simd::{self, Job};
     use crate::{Allocator, UpdateRule};
 
-    struct Refresh<'a>(&'a Buffer);
+    struct Refresh<'a>(&'a Buffer, TileRect);
 
     impl Job for Refresh<'_> {
         type Output = ();
 
         fn run<S: Simd>(self, s: S) {
             // SAFETY: the test has the buffer to itself.
-            unsafe { refresh(s, self.0, self.0.all_tiles()) }
+            unsafe { refresh(s, self.0, self.1) }
+        }
+    }
+
+    /// Fills buffers and brings all of their areas up to date, then those of a piece.
+    fn check(who: &str, refresh: impl Fn(Refresh<'_>)) {
+        let mut random = fastrand::Rng::with_seed(1);
+        for (width, height) in [(1, 1), (33, 9), (1920, 1080), (2050, 70), (16_384, 8), (40, 16_384)] {
+            let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+            let (tiles_w, tiles_h) = (buffer.tiles_w, buffer.tiles_h);
+            let (areas_w, areas_h) = counts(tiles_w, tiles_h);
+            // SAFETY (of all blocks): tiles and areas of a buffer that nobody else has.
+            let least = |x, y| unsafe { *buffer.least_of(x, y) };
+            let area = |x: u32, y: u32| buffer.areas().wrapping_add((y * areas_w + x) as usize);
+            for (x, y) in (0..tiles_h).flat_map(|y| (0..tiles_w).map(move |x| (x, y))) {
+                unsafe { buffer.least_of(x, y).write(random.f32()) };
+            }
+            // A piece begins with an area and ends with one or at the buffer's end.
+            let (x0, y0) = (areas_w / 3, areas_h / 3);
+            let (x1, y1) = ((2 * areas_w / 3).max(x0 + 1), areas_h);
+            let piece = TileRect {
+                x0: AREA_TILES_W * x0,
+                y0: AREA_TILES_H * y0,
+                x1: (AREA_TILES_W * x1).min(tiles_w),
+                y1: tiles_h,
+            };
+            for (clip, is_inside) in [
+                (buffer.all_tiles(), Box::new(|_, _| true) as Box<dyn Fn(u32, u32) -> bool>),
+                (piece, Box::new(|x, y| (x0..x1).contains(&x) && (y0..y1).contains(&y))),
+            ] {
+                for (x, y) in (0..areas_h).flat_map(|y| (0..areas_w).map(move |x| (x, y))) {
+                    unsafe { area(x, y).write(UNTOUCHED) };
+                }
+                refresh(Refresh(&buffer, clip));
+                for (x, y) in (0..areas_h).flat_map(|y| (0..areas_w).map(move |x| (x, y))) {
+                    let columns = AREA_TILES_W * x..(AREA_TILES_W * (x + 1)).min(tiles_w);
+                    let rows = AREA_TILES_H * y..(AREA_TILES_H * (y + 1)).min(tiles_h);
+                    let of_tiles = rows
+                        .flat_map(|y| columns.clone().map(move |x| (x, y)))
+                        .map(|(x, y)| least(x, y))
+                        .fold(f32::MAX, f32::min);
+                    let expected = if is_inside(x, y) { of_tiles } else { UNTOUCHED };
+                    let got = unsafe { *area(x, y) };
+                    assert_eq!(got, expected, "{who} {width}x{height} {clip:?} area {x}, {y}");
+                }
+            }
         }
     }
 
     #[test]
     fn an_area_is_the_least_of_its_tiles() {
-        let mut random = fastrand::Rng::with_seed(1);
         for &implementation in simd::available() {
-            for (width, height) in [(1, 1), (33, 9), (1920, 1080), (2050, 70), (16_384, 8), (40, 16_384)] {
-                let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
-                let (tiles_w, tiles_h) = (buffer.tiles_w, buffer.tiles_h);
-                // SAFETY (of both blocks): tiles and areas of a buffer that nobody else has.
-                let least = |x, y| unsafe { *buffer.least_of(x, y) };
-                for y in 0..tiles_h {
-                    for x in 0..tiles_w {
-                        unsafe { buffer.least_of(x, y).write(random.f32()) };
-                    }
-                }
-                simd::run(implementation, Refresh(&buffer));
-                let (areas_w, areas_h) = counts(tiles_w, tiles_h);
-                for (x, y) in (0..areas_h).flat_map(|y| (0..areas_w).map(move |x| (x, y))) {
-                    let columns = AREA_TILES_W * x..(AREA_TILES_W * (x + 1)).min(tiles_w);
-                    let rows = AREA_TILES_H * y..(AREA_TILES_H * (y + 1)).min(tiles_h);
-                    let expected = rows
-                        .flat_map(|y| columns.clone().map(move |x| (x, y)))
-                        .map(|(x, y)| least(x, y))
-                        .fold(f32::MAX, f32::min);
-                    // SAFETY: as above.
-                    let area = unsafe { *buffer.areas().add((y * areas_w + x) as usize) };
-                    assert_eq!(area, expected, "{implementation:?} {width}x{height} area {x}, {y}");
-                }
-            }
+            check(&format!("{implementation:?}"), |job| simd::run(implementation, job));
+        }
+        #[cfg(target_arch = "x86_64")]
+        if simd::available().contains(&crate::Implementation::Avx2) {
+            check("sixteen lanes", |job| {
+                simd::with_sixteen_lanes(|| simd::run(crate::Implementation::Avx2, job));
+            });
         }
     }
 }

@@ -90,6 +90,10 @@ impl<S: Simd> Boxes<S> {
         purpose: Purpose,
     ) -> (S::M, Option<OpenOfFew<S>>) {
         let nearest = self.nearest;
+        if clip.x0 >= clip.x1 || clip.y0 >= clip.y1 {
+            // No tile of it could stand for the lanes that look at none.
+            return (self.inside, None);
+        }
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
         if clip != buffer.all_tiles() {
@@ -99,7 +103,7 @@ impl<S: Simd> Boxes<S> {
         }
         let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
         let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
-        let (mut few, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
+        let (mut looked_at, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
         let (mut left, mut right, mut top, mut bottom) = (x0, x1, y0, y1);
         if with_areas && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
             let or_area = |tile: S::I, area: S::I| s.select_i(tiles, tile, area);
@@ -109,13 +113,13 @@ impl<S: Simd> Boxes<S> {
             bottom = or_area(y1, s.sra::<AREA_ROW_SHIFT>(y1));
             first = or_area(first, s.i(buffer.first_area() as i32));
             pitch = s.select(tiles, pitch, s.f(buffer.areas_w() as f32));
-            few = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
+            looked_at = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
         }
         // Exact: there are at most 2^20 tiles.
         let row = |y: S::I| s.add_i(first, s.round(s.mul(s.to_f(y), pitch)));
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
-        let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
+        let at = |row: S::I, x: S::I| s.select_i(looked_at, s.add_i(row, x), any);
         let mut open = None;
         // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile. After
         // the last tile and the last area there is room; beside a rectangle, another thread may be writing.
@@ -132,23 +136,24 @@ impl<S: Simd> Boxes<S> {
                 let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
                 let (narrow, low) = (s.eq_i(left, right), s.eq_i(y0, y1));
                 if S::LANES == 8 && purpose == Purpose::Draw {
-                    let bit = |least: S::F, not: S::M, bit: i32| {
-                        s.select_i(s.and_not_m(not, s.lt(least, nearest)), s.i(bit), s.i(0))
+                    let bit_of = |least: S::F, without: S::M, bit: i32| {
+                        s.select_i(s.and_not_m(without, s.lt(least, nearest)), s.i(bit), s.i(0))
                     };
                     let none = s.first(0);
-                    let upper = s.or(bit(top, none, 1), bit(beside_top, narrow, 2));
-                    let lower = s.or(bit(bottom, low, 4), bit(beside_bottom, s.or_m(narrow, low), 8));
+                    let upper = s.or(bit_of(top, none, 1), bit_of(beside_top, narrow, 2));
+                    let lower = s.or(bit_of(bottom, low, 4), bit_of(beside_bottom, s.or_m(narrow, low), 8));
                     open = Some(OpenOfFew { few: tiles, open: s.or(upper, lower) });
                 }
                 s.select(narrow, least, s.min(least, beside))
             }
         };
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        (s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden)), open)
+        (s.or_m(s.and_not_m(inside, self.inside), s.and_m(looked_at, hidden)), open)
     }
 }
 
-/// The open tiles of boxes of up to two columns and rows: 1 and 2 are the upper row's, 4 and 8 the lower row's.
+/// The open tiles of boxes of up to two columns and rows: 1 and 2 are the upper row's, 4 and 8 the lower row's. Of other boxes it
+/// may be any of these.
 pub(super) struct OpenOfFew<S: Simd> {
     /// Boxes that are as small.
     pub few: S::M,

@@ -2,7 +2,8 @@
 //!
 //! Where every triangle of a vector has its box in two columns and two rows of tiles, no strip has to be bounded, and no least
 //! depth looked at again: each has an upper strip, which gets its lane's number, and perhaps a lower one, eight further. A tile
-//! that the box has and the triangle does not reach may be among them, which changes nothing in the buffer. Eight lanes only: what
+//! that the box has and the triangle does not reach may be among them, which changes nothing that the buffer says: if nothing was
+//! drawn into it, it becomes an empty one. Eight lanes only: what
 //! sixteen would gain could not be measured.
 
 use super::batch::{Batch, Lanes};
@@ -14,7 +15,7 @@ use crate::simd::Simd;
 /// From an upper strip to its triangle's lower one.
 const LOWER: u32 = 8;
 
-/// For each set of open tiles, how they are named, from the first column of the upper strip on.
+/// For each set of open tiles, how they are named, from the first column of the upper strip on; as long as a vector.
 static NAMES: [[u32; 8]; 16] = {
     let mut names = [[0; 8]; 16];
     let mut open = 0;
@@ -34,10 +35,13 @@ static NAMES: [[u32; 8]; 16] = {
 
 impl Strips<'_> {
     /// Lists the open tiles of all triangles.
+    ///
+    /// # Safety
+    /// All of them are in `Alive::few`, for which setup stored what is open.
     #[inline(always)]
-    pub(super) fn list_few<T: Simd, S: TileStep<T>>(&mut self, t: T, buffer: &Buffer, batch: &Batch) -> Open {
+    pub(super) unsafe fn list_few<T: Simd, S: TileStep<T>>(&mut self, t: T, buffer: &Buffer, batch: &Batch) -> Open {
         debug_assert!(T::LANES <= LOWER as usize);
-        // SAFETY: setup stored the fields of every lane; the lists have room for two vectors of strips.
+        // SAFETY: setup stored the fields of every lane where any is alive; eight and the strip numbers below it are below `STRIPS`.
         unsafe {
             let of = |field: &Lanes<f32>| t.load_f(field.as_ptr());
             let of_i = |field: &Lanes<u32>| t.load_i(field.as_ptr());
@@ -56,8 +60,8 @@ impl Strips<'_> {
         while self.todo != 0 {
             let lane = self.todo.trailing_zeros() as usize;
             self.todo &= self.todo - 1;
-            // SAFETY: setup stored what is open of every lane, which is below 16; eight triangles have no more than 16 strips and 32
-            // tiles, after which there is room for a vector.
+            // SAFETY: the caller's contract, and what is open is below 16; eight triangles have no more than 16 strips and 32 tiles,
+            // after which there is room for a vector.
             unsafe {
                 let open = batch.open.get(lane) as usize;
                 let first = self.lists.first.get_unchecked(lane).assume_init();

@@ -2,7 +2,7 @@
 //!
 //! A vector of triangles becomes a list of strips, in order; a vector of strips at a time, their edges bound which
 //! tiles a strip reaches; and the tiles whose least depth does not hide the triangle become one flat list. None of the
-//! loops has a branch that depends on the scene. The bounds are made of the edges in f32, widened by what rounding
+//! loops has a branch that depends on the scene. Small triangles need no bounds (see `few_tiles.rs`). The bounds are made of the edges in f32, widened by what rounding
 //! may be off, so that they may name a tile too many but never one too few.
 
 use core::mem::MaybeUninit;
@@ -65,8 +65,8 @@ pub(super) struct Lists {
     clamp: Floats,
     pub(super) sub_column: Words,
     /// Of each triangle: its lane and first row, and how many rows it has.
-    triangle: [MaybeUninit<u32>; MAX_LANES],
-    rows: [MaybeUninit<u32>; MAX_LANES],
+    first_of_triangle: [MaybeUninit<u32>; MAX_LANES],
+    rows_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     /// Strips with an open tile.
     pub(super) opened: [MaybeUninit<u32>; STRIPS + 1],
     pub(super) tiles: OpenTiles,
@@ -120,8 +120,8 @@ impl<'a> Strips<'a> {
             let first = t.max_i(rows_of(&batch.tile_y0), t.i((clip.y0 / height::<T>()) as i32));
             let last = t.min_i(rows_of(&batch.tile_y1), t.i(clip.y1.div_ceil(height::<T>()) as i32 - 1));
             let rows = t.max_i(t.sub_i(t.add_i(last, t.i(1)), first), t.i(0));
-            t.store_i(lists.triangle.as_mut_ptr().cast(), t.or(t.shl::<PLACE_SHIFT>(t.iota()), first));
-            t.store_i(lists.rows.as_mut_ptr().cast(), rows);
+            t.store_i(lists.first_of_triangle.as_mut_ptr().cast(), t.or(t.shl::<PLACE_SHIFT>(t.iota()), first));
+            t.store_i(lists.rows_of_triangle.as_mut_ptr().cast(), rows);
         }
         if T::LANES == MAX_LANES {
             // Vectors of sixteen lanes look up in all 32, of which as few as one vector is bounded.
@@ -138,7 +138,7 @@ impl<'a> Strips<'a> {
     /// Lane of the triangle, and row of tiles, in rows of a vector's height, of a strip.
     #[inline(always)]
     pub fn place(&self, strip: usize) -> (usize, u32) {
-        // SAFETY: the strips up to `listed` were written, and only those are asked for.
+        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
         let word = unsafe { self.lists.place.get_unchecked(strip).assume_init() };
         unpack(word)
     }
@@ -153,7 +153,7 @@ impl<'a> Strips<'a> {
     /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
     #[inline(always)]
     pub fn rows(&self, strip: usize) -> (f32, i32) {
-        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
+        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
         unsafe {
             let sub_row = self.lists.sub_row.get_unchecked(strip).assume_init();
             (self.lists.top.get_unchecked(strip).assume_init(), sub_row as i32)
@@ -163,7 +163,7 @@ impl<'a> Strips<'a> {
     /// Depth bound's change from sub-tile to sub-tile, and its clamp.
     #[inline(always)]
     pub fn slope(&self, strip: usize) -> (f32, f32) {
-        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
+        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
         unsafe {
             (self.lists.across.get_unchecked(strip).assume_init(), self.lists.clamp.get_unchecked(strip).assume_init())
         }
@@ -179,7 +179,8 @@ impl<'a> Strips<'a> {
         batch: &Batch,
     ) -> Option<Open> {
         if T::LANES == 8 && S::DRAWS && self.few {
-            return (self.todo != 0).then(|| self.list_few::<T, S>(t, buffer, batch));
+            // SAFETY: `new` saw that all that are alive are few.
+            return (self.todo != 0).then(|| unsafe { self.list_few::<T, S>(t, buffer, batch) });
         }
         if self.next == self.listed {
             self.list::<T>(t);
@@ -209,10 +210,10 @@ impl<'a> Strips<'a> {
             let lane = self.todo.trailing_zeros() as usize;
             // SAFETY: `new` wrote what it found of every lane; there is room for a vector after `STRIPS`.
             let rows = unsafe {
-                place = self.lists.triangle.get_unchecked(lane).assume_init() + self.row;
+                place = self.lists.first_of_triangle.get_unchecked(lane).assume_init() + self.row;
                 let places = t.add_i(t.i(place as i32), t.iota());
                 t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), places);
-                self.lists.rows.get_unchecked(lane).assume_init()
+                self.lists.rows_of_triangle.get_unchecked(lane).assume_init()
             };
             let taken = (rows - self.row).min(T::LANES as u32).min((STRIPS - listed) as u32);
             listed += taken as usize;

@@ -10,8 +10,8 @@ use glam::Mat4;
 
 use crate::simd::with_sixteen_lanes;
 use crate::{
-    BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, ScissorRect, Settings,
-    TriList, UpdateRule, VertexLayout, Vertices, YAxis,
+    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Implementation, MaskedOcclusionCulling,
+    ScissorRect, Settings, TriList, UpdateRule, VertexLayout, Vertices, YAxis,
 };
 use scenes::Scene;
 
@@ -147,13 +147,11 @@ fn lists_are_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {
         let (mut moc, options) = (setting.object(scene.near), options(scene, BackfaceWinding::Clockwise));
         let triangles = scene.objects.concat();
-        // Bins of an odd number of tiles take what vectors of eight lanes are for.
+        // Bins with an odd number of rows of tiles are drawn on eight lanes.
         let (bins, (w, h)) = ((2, 3), setting.size);
         let mut memory = vec![vec![0.0; 9 * (triangles.len() + 64)]; 6];
         let mut lists: Vec<_> = memory.iter_mut().map(|memory| TriList::new(memory)).collect();
-        let answer =
-            moc.bin_triangles(vertices(scene), &triangles, &mut lists, bins.0, bins.1, &options).map(|_| ()).is_ok();
-        assert!(answer);
+        moc.bin_triangles(vertices(scene), &triangles, &mut lists, bins.0, bins.1, &options).unwrap();
         let (wide, high) = moc.compute_bin_size(bins.0, bins.1).unwrap();
         for (k, list) in lists.iter().enumerate() {
             let (x, y) = (k as u32 % bins.0, k as u32 / bins.0);
@@ -167,5 +165,21 @@ fn lists_are_the_same_on_sixteen_lanes() {
             moc.render_trilist(list, Some(scissor)).unwrap();
         }
         outcome(&moc, setting, Vec::new())
+    });
+}
+
+/// Nothing wakes the pool's threads: who flushes does all of it, on this thread, in eight bins.
+#[test]
+fn a_pool_is_the_same_on_sixteen_lanes() {
+    compare(|scene, setting| {
+        let options = options(scene, BackfaceWinding::Clockwise);
+        let pool = CullingThreadpool::with_processors(2, 2, 4, 32, 8).unwrap();
+        pool.set_buffer(setting.object(scene.near));
+        pool.scope(|scope| {
+            for object in &scene.objects {
+                scope.render_triangles(vertices(scene), object, &options).unwrap();
+            }
+        });
+        outcome(&pool.take_buffer().unwrap(), setting, Vec::new())
     });
 }

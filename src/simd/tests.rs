@@ -1,5 +1,7 @@
 //! Every operation on every instruction set against the scalar one, bit by bit.
 
+#[cfg(target_arch = "x86_64")]
+use super::with_sixteen_lanes;
 use super::{Job, Simd, available, run};
 use crate::Implementation;
 
@@ -33,7 +35,7 @@ impl Job for AllOperations {
 #[inline(always)]
 fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     let mut out: Vec<Vec<u32>> = Vec::new();
-    let mut kept = Vec::new();
+    let (mut kept, mut listed) = (Vec::new(), Vec::new());
     let mut stored_records = Vec::new();
     let count_of_lanes = input.index[0] as usize;
     for first in (0..N).step_by(S::LANES) {
@@ -138,6 +140,10 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let mut packed = [0; N];
             let n = s.compress(packed.as_mut_ptr(), m, i);
             kept.extend_from_slice(&packed[..n]);
+            let named = 1000 + first as u32;
+            let n = s.list_lanes(packed.as_mut_ptr(), m, count_of_lanes.saturating_sub(first), named);
+            listed.extend_from_slice(&packed[..n]);
+            results.push(lanes(s.load_bytes(input.i.as_ptr().cast::<u8>().add(first))));
         }
         let bits = s.mask_bits(m);
         results.push((0..S::LANES).map(|lane| bits >> lane & 1).collect());
@@ -162,6 +168,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     out.push(least.map(f32::to_bits).to_vec());
     out.push(stored_records);
     out.push(kept);
+    out.push(listed);
     out.concat()
 }
 
@@ -205,6 +212,11 @@ fn every_instruction_set_agrees_with_scalar() {
             let got = run(implementation, AllOperations(input));
             let same = expected == got;
             assert!(same, "{implementation:?}, round {round}:\n{expected:x?}\n{got:x?}");
+        }
+        #[cfg(target_arch = "x86_64")]
+        if available().contains(&Implementation::Avx2) {
+            let got = with_sixteen_lanes(|| run(Implementation::Avx2, AllOperations(input)));
+            assert!(expected == got, "two vectors of AVX2, round {round}:\n{expected:x?}\n{got:x?}");
         }
     }
 }
