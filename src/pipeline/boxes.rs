@@ -5,6 +5,7 @@
 //! gathers. Without areas half of a castle's triangles that got edges had no open tile. Of the smaller ones it is then known
 //! which tiles are open (see `few_tiles.rs`).
 
+use super::project::bit_where;
 use super::setup::{Purpose, VERTEX_MARGIN};
 use super::survivors::Corner;
 use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
@@ -136,12 +137,12 @@ impl<S: Simd> Boxes<S> {
                 let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
                 let (narrow, low) = (s.eq_i(left, right), s.eq_i(y0, y1));
                 if S::LANES == 8 && purpose == Purpose::Draw {
-                    let bit_of = |least: S::F, without: S::M, bit: i32| {
-                        s.select_i(s.and_not_m(without, s.lt(least, nearest)), s.i(bit), s.i(0))
-                    };
-                    let none = s.first(0);
-                    let upper = s.or(bit_of(top, none, 1), bit_of(beside_top, narrow, 2));
-                    let lower = s.or(bit_of(bottom, low, 4), bit_of(beside_bottom, s.or_m(narrow, low), 8));
+                    // No closure: one that is called four times is not inlined.
+                    let upper = bit_where(s, s.lt(top, nearest), 1);
+                    let upper = s.or(upper, bit_where(s, s.and_not_m(narrow, s.lt(beside_top, nearest)), 2));
+                    let lower = bit_where(s, s.and_not_m(low, s.lt(bottom, nearest)), 4);
+                    let one_tile = s.or_m(narrow, low);
+                    let lower = s.or(lower, bit_where(s, s.and_not_m(one_tile, s.lt(beside_bottom, nearest)), 8));
                     open = Some(OpenOfFew { few: tiles, open: s.or(upper, lower) });
                 }
                 s.select(narrow, least, s.min(least, beside))
