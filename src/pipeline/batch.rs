@@ -61,7 +61,7 @@ pub(super) struct Batch {
     pub tile_x1: Lanes<u32>,
     pub tile_y0: Lanes<u32>,
     pub tile_y1: Lanes<u32>,
-    /// Where `Alive::few` is not 0: of boxes of a few tiles, which are open, as in `OpenOfFew`.
+    /// Where `Alive::few` is not 0: of boxes of a few tiles, which are open, by `OpenOfFew::open`.
     pub open: Lanes<u32>,
     /// Rows and columns of pixels of the bounding box, the last outside.
     pub row0: Lanes<f32>,

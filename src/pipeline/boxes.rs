@@ -137,13 +137,8 @@ impl<S: Simd> Boxes<S> {
                 let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
                 let (narrow, low) = (s.eq_i(left, right), s.eq_i(y0, y1));
                 if S::LANES == 8 && purpose == Purpose::Draw {
-                    // No closure: one that is called four times is not inlined.
-                    let upper = bit_where(s, s.lt(top, nearest), 1);
-                    let upper = s.or(upper, bit_where(s, s.and_not_m(narrow, s.lt(beside_top, nearest)), 2));
-                    let lower = bit_where(s, s.and_not_m(low, s.lt(bottom, nearest)), 4);
-                    let one_tile = s.or_m(narrow, low);
-                    let lower = s.or(lower, bit_where(s, s.and_not_m(one_tile, s.lt(beside_bottom, nearest)), 8));
-                    open = Some(OpenOfFew { few: tiles, open: s.or(upper, lower) });
+                    let least = [top, beside_top, bottom, beside_bottom];
+                    open = Some(OpenOfFew { few: tiles, least, narrow, low });
                 }
                 s.select(narrow, least, s.min(least, beside))
             }
@@ -153,10 +148,28 @@ impl<S: Simd> Boxes<S> {
     }
 }
 
-/// The open tiles of boxes of up to two columns and rows: 1 and 2 are the upper row's, 4 and 8 the lower row's. Of other boxes it
-/// may be any of these.
+/// What is known of boxes of up to two columns and rows of tiles.
 pub(super) struct OpenOfFew<S: Simd> {
-    /// Boxes that are as small.
+    /// Boxes that are as small; of others it may be anything.
     pub few: S::M,
-    pub open: S::I,
+    /// Least depths of the upper row's two tiles, and of the lower row's.
+    least: [S::F; 4],
+    /// Boxes of one column, and of one row.
+    narrow: S::M,
+    low: S::M,
+}
+
+impl<S: Simd> OpenOfFew<S> {
+    /// The open tiles: 1 and 2 are the upper row's, 4 and 8 the lower row's.
+    #[inline(always)]
+    pub fn open(&self, s: S, nearest: S::F) -> S::I {
+        // No closure: one that is called four times is not inlined.
+        let [top, beside_top, bottom, beside_bottom] = self.least;
+        let upper = bit_where(s, s.lt(top, nearest), 1);
+        let upper = s.or(upper, bit_where(s, s.and_not_m(self.narrow, s.lt(beside_top, nearest)), 2));
+        let lower = bit_where(s, s.and_not_m(self.low, s.lt(bottom, nearest)), 4);
+        let one_tile = s.or_m(self.narrow, self.low);
+        let lower = s.or(lower, bit_where(s, s.and_not_m(one_tile, s.lt(beside_bottom, nearest)), 8));
+        s.or(upper, lower)
+    }
 }

@@ -99,14 +99,14 @@ pub(super) fn set_up<S: Simd>(
         // SAFETY: the pipeline's caller vouches for the buffer.
         let (is_hidden, open) = unsafe { boxes.hidden::<false>(s, buffer, look, purpose) };
         hidden = s.mask_bits(is_hidden);
-        if let Some(open) = open {
-            few = s.mask_bits(open.few);
-            // SAFETY: the arrays of a batch hold the lanes of any vector.
-            unsafe { s.store_i(batch.open.as_mut_ptr(), open.open) };
-        }
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();
+        }
+        if let Some(open) = open {
+            few = s.mask_bits(open.few);
+            // SAFETY: the arrays of a batch hold the lanes of any vector.
+            unsafe { s.store_i(batch.open.as_mut_ptr(), open.open(s, nearest)) };
         }
     }
     let Boxes { column0, column1, row0, row1, tile_x0, tile_x1, tile_y0, tile_y1, .. } = boxes;
