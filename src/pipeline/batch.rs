@@ -61,8 +61,6 @@ pub(super) struct Batch {
     pub tile_x1: Lanes<u32>,
     pub tile_y0: Lanes<u32>,
     pub tile_y1: Lanes<u32>,
-    /// Where `Alive::few` is not 0: of boxes of a few tiles, which are open, by `OpenOfFew::open`.
-    pub open: Lanes<u32>,
     /// Rows and columns of pixels of the bounding box, the last outside.
     pub row0: Lanes<f32>,
     pub row1: Lanes<f32>,

@@ -2,10 +2,8 @@
 //!
 //! A box of one or two columns and rows of tiles is compared with the least depths of its four corners' tiles, which are
 //! all its tiles; a larger one with those of areas of 128x64 pixels (see `areas.rs`) in the same way, by the same
-//! gathers. Without areas half of a castle's triangles that got edges had no open tile. Of the smaller ones it is then known
-//! which tiles are open (see `few_tiles.rs`).
+//! gathers. Without areas half of a castle's triangles that got edges had no open tile.
 
-use super::project::bit_where;
 use super::setup::{Purpose, VERTEX_MARGIN};
 use super::survivors::Corner;
 use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
@@ -73,8 +71,7 @@ impl<S: Simd> Boxes<S> {
         }
     }
 
-    /// Boxes whose triangles are hidden inside of a rectangle of tiles, or have nothing there; and which of a few tiles are open,
-    /// if that was looked at.
+    /// Boxes whose triangles are hidden inside of a rectangle of tiles, or have nothing there.
     ///
     /// How current areas are depends on the instruction set. That changes nothing in the buffer; but a query's counts
     /// would tell, and it leaves them out.
@@ -89,11 +86,11 @@ impl<S: Simd> Boxes<S> {
         buffer: &Buffer,
         Look { clip, areas: with_areas }: Look,
         purpose: Purpose,
-    ) -> (S::M, Option<OpenOfFew<S>>) {
+    ) -> S::M {
         let nearest = self.nearest;
         if clip.x0 >= clip.x1 || clip.y0 >= clip.y1 {
             // No tile of it could stand for the lanes that look at none.
-            return (self.inside, None);
+            return self.inside;
         }
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
@@ -104,7 +101,7 @@ impl<S: Simd> Boxes<S> {
         }
         let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
         let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
-        let (mut looked_at, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
+        let (mut few, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
         let (mut left, mut right, mut top, mut bottom) = (x0, x1, y0, y1);
         if with_areas && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
             let or_area = |tile: S::I, area: S::I| s.select_i(tiles, tile, area);
@@ -114,14 +111,13 @@ impl<S: Simd> Boxes<S> {
             bottom = or_area(y1, s.sra::<AREA_ROW_SHIFT>(y1));
             first = or_area(first, s.i(buffer.first_area() as i32));
             pitch = s.select(tiles, pitch, s.f(buffer.areas_w() as f32));
-            looked_at = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
+            few = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
         }
         // Exact: there are at most 2^20 tiles.
         let row = |y: S::I| s.add_i(first, s.round(s.mul(s.to_f(y), pitch)));
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
-        let at = |row: S::I, x: S::I| s.select_i(looked_at, s.add_i(row, x), any);
-        let mut open = None;
+        let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
         // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile. After
         // the last tile and the last area there is room; beside a rectangle, another thread may be writing.
         let least = unsafe {
@@ -135,41 +131,10 @@ impl<S: Simd> Boxes<S> {
                 let [top, beside_top] = s.gather_pairs(buffer.least(), at(top, left));
                 let [bottom, beside_bottom] = s.gather_pairs(buffer.least(), at(bottom, left));
                 let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
-                let (narrow, low) = (s.eq_i(left, right), s.eq_i(y0, y1));
-                if S::LANES == 8 && purpose == Purpose::Draw {
-                    let least = [top, beside_top, bottom, beside_bottom];
-                    open = Some(OpenOfFew { few: tiles, least, narrow, low });
-                }
-                s.select(narrow, least, s.min(least, beside))
+                s.select(s.eq_i(left, right), least, s.min(least, beside))
             }
         };
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
-        (s.or_m(s.and_not_m(inside, self.inside), s.and_m(looked_at, hidden)), open)
-    }
-}
-
-/// What is known of boxes of up to two columns and rows of tiles.
-pub(super) struct OpenOfFew<S: Simd> {
-    /// Boxes that are as small; of others it may be anything.
-    pub few: S::M,
-    /// Least depths of the upper row's two tiles, and of the lower row's.
-    least: [S::F; 4],
-    /// Boxes of one column, and of one row.
-    narrow: S::M,
-    low: S::M,
-}
-
-impl<S: Simd> OpenOfFew<S> {
-    /// The open tiles: 1 and 2 are the upper row's, 4 and 8 the lower row's.
-    #[inline(always)]
-    pub fn open(&self, s: S, nearest: S::F) -> S::I {
-        // No closure: one that is called four times is not inlined.
-        let [top, beside_top, bottom, beside_bottom] = self.least;
-        let upper = bit_where(s, s.lt(top, nearest), 1);
-        let upper = s.or(upper, bit_where(s, s.and_not_m(self.narrow, s.lt(beside_top, nearest)), 2));
-        let lower = bit_where(s, s.and_not_m(self.low, s.lt(bottom, nearest)), 4);
-        let one_tile = s.or_m(self.narrow, self.low);
-        let lower = s.or(lower, bit_where(s, s.and_not_m(one_tile, s.lt(beside_bottom, nearest)), 8));
-        s.or(upper, lower)
+        s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))
     }
 }

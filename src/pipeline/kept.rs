@@ -111,7 +111,7 @@ impl LastStep for Keep<'_> {
         if self.sift {
             let boxes = Boxes::new(s, buffer, Purpose::Draw, corners);
             // SAFETY: whoever draws meanwhile stores least depths as words, in which old ones are safe.
-            let (hidden, _) = unsafe { boxes.hidden::<true>(s, buffer, setup.look, Purpose::Draw) };
+            let hidden = unsafe { boxes.hidden::<true>(s, buffer, setup.look, Purpose::Draw) };
             open = s.and_not_m(hidden, s.and_m(active, boxes.inside));
         }
         let bits = s.mask_bits(open);

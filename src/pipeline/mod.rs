@@ -22,7 +22,6 @@ mod chunk;
 mod clip;
 mod cull;
 mod edges;
-mod few_tiles;
 mod kept;
 mod last_step;
 mod list;

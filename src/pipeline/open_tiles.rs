@@ -67,7 +67,7 @@ impl Strips<'_> {
     #[inline(always)]
     pub fn tile<T: Simd, S: TileStep<T>>(&self, t: T, k: usize) -> Tile<T> {
         let lists = &*self.lists;
-        // SAFETY: only those that `next` counted are asked for, which are of strips that it wrote; those of vectors of sixteen
+        // SAFETY: only those that `next` counted are asked for, which are of strips that were bounded; those of vectors of sixteen
         // lanes were located.
         unsafe {
             let (strip, x) = unpack(lists.tiles.named.get_unchecked(k).assume_init());

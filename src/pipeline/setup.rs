@@ -65,8 +65,6 @@ pub(super) struct Alive {
     pub rasterized: u32,
     /// Those that reach the last step.
     pub lanes: u32,
-    /// Those whose box has two columns and rows of tiles at most, if the batch has which of them are open.
-    pub few: u32,
 }
 
 /// How a call's triangles are set up.
@@ -94,19 +92,13 @@ pub(super) fn set_up<S: Simd>(
     let boxes = Boxes::new(s, buffer, purpose, &[a, b, c]);
     let inside = s.and_m(active, boxes.inside);
     let nearest = boxes.nearest;
-    let (mut hidden, mut few) = (0, 0);
+    let mut hidden = 0;
     if purpose != Purpose::Bin {
         // SAFETY: the pipeline's caller vouches for the buffer.
-        let (is_hidden, open) = unsafe { boxes.hidden::<false>(s, buffer, look, purpose) };
-        hidden = s.mask_bits(is_hidden);
+        hidden = s.mask_bits(unsafe { boxes.hidden::<false>(s, buffer, look, purpose) });
         // Where nothing is counted, nothing more has to be known of a vector that is hidden.
         if !query && !buffer.statistics() && s.mask_bits(inside) & !hidden == 0 {
             return Alive::default();
-        }
-        if let Some(open) = open {
-            few = s.mask_bits(open.few);
-            // SAFETY: the arrays of a batch hold the lanes of any vector.
-            unsafe { s.store_i(batch.open.as_mut_ptr(), open.open(s, nearest)) };
         }
     }
     let Boxes { column0, column1, row0, row1, tile_x0, tile_x1, tile_y0, tile_y1, .. } = boxes;
@@ -160,11 +152,11 @@ pub(super) fn set_up<S: Simd>(
     store!(i tile_y0, tile_y0);
     store!(i tile_y1, tile_y1);
     if purpose == Purpose::Bin || lanes == 0 {
-        return Alive { rasterized, lanes, few };
+        return Alive { rasterized, lanes };
     }
 
     lanes &= !hidden;
-    let found = Alive { rasterized, lanes, few };
+    let found = Alive { rasterized, lanes };
     if lanes == 0 {
         return found;
     }

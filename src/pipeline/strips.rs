@@ -2,14 +2,13 @@
 //!
 //! A vector of triangles becomes a list of strips, in order; a vector of strips at a time, their edges bound which
 //! tiles a strip reaches; and the tiles whose least depth does not hide the triangle become one flat list. None of the
-//! loops has a branch that depends on the scene. Small triangles need no bounds (see `few_tiles.rs`). The bounds are made of the edges in f32, widened by what rounding
+//! loops has a branch that depends on the scene. The bounds are made of the edges in f32, widened by what rounding
 //! may be off, so that they may name a tile too many but never one too few.
 
 use core::mem::MaybeUninit;
 
 use super::batch::{Batch, Lanes};
 use super::open_tiles::{HALF_SHIFT, OpenTiles, planes_before};
-use super::setup::Alive;
 use super::tile_step::TileStep;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
@@ -42,9 +41,9 @@ pub(super) const fn height<T: Simd>() -> u32 {
 #[repr(C, align(64))]
 pub(super) struct Lists {
     /// Triangle's lane and, of a vector's height, row of tiles.
-    pub(super) place: Words,
+    place: Words,
     /// The strip's number and its first tile's column.
-    pub(super) first: Words,
+    first: Words,
     /// Tiles, of which there may be none.
     count: Words,
     /// The triangle's nearest depth where the strip has the row of tiles, else [`CLOSED`]; of sixteen lanes, the upper
@@ -68,7 +67,7 @@ pub(super) struct Lists {
     first_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     rows_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     /// Strips with an open tile.
-    pub(super) opened: [MaybeUninit<u32>; STRIPS + 1],
+    opened: [MaybeUninit<u32>; STRIPS + 1],
     pub(super) tiles: OpenTiles,
 }
 
@@ -76,28 +75,11 @@ pub(super) struct Lists {
 pub(super) struct Strips<'a> {
     pub(super) lists: &'a mut Lists,
     /// Triangles whose strips were not listed yet, and the row to go on with of the first.
-    pub(super) todo: u32,
+    todo: u32,
     row: u32,
-    /// All of them have a few tiles, of which it is known which are open.
-    few: bool,
     /// Strips listed, and the one to go on with.
     listed: usize,
     next: usize,
-}
-
-/// A vector of strips: its row, and what it takes of its triangle.
-pub(super) struct Placed<T: Simd> {
-    /// In rows of tiles of a vector's height.
-    pub row: T::I,
-    /// The box's first tile.
-    pub tile_x0: T::I,
-    pub tile_y0: T::I,
-    /// Depth bound's change from sub-tile to sub-tile, and its clamp.
-    pub across: T::F,
-    pub clamp: T::F,
-    /// First column and number of the tiles that are covered wholly.
-    pub inner_first: T::I,
-    pub inner: T::I,
 }
 
 /// What is open at a time.
@@ -108,7 +90,13 @@ pub(super) struct Open {
 
 impl<'a> Strips<'a> {
     #[inline(always)]
-    pub fn new<T: Simd>(t: T, lists: &'a mut MaybeUninit<Lists>, clip: TileRect, batch: &Batch, alive: &Alive) -> Self {
+    pub fn new<T: Simd>(
+        t: T,
+        lists: &'a mut MaybeUninit<Lists>,
+        clip: TileRect,
+        batch: &Batch,
+        triangles: u32,
+    ) -> Self {
         // SAFETY: every field is an array of `MaybeUninit`.
         let lists = unsafe { lists.assume_init_mut() };
         // SAFETY: the arrays hold a vector; setup stored the tiles of every box.
@@ -131,14 +119,13 @@ impl<'a> Strips<'a> {
                 unsafe { t.store_i(list.as_mut_ptr().add(T::LANES).cast(), t.i(0)) };
             }
         }
-        let few = T::LANES == 8 && alive.lanes & !alive.few == 0;
-        Self { lists, todo: alive.lanes, row: 0, few, listed: 0, next: 0 }
+        Self { lists, todo: triangles, row: 0, listed: 0, next: 0 }
     }
 
     /// Lane of the triangle, and row of tiles, in rows of a vector's height, of a strip.
     #[inline(always)]
     pub fn place(&self, strip: usize) -> (usize, u32) {
-        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
+        // SAFETY: the strips up to `listed` were written, and only those are asked for.
         let word = unsafe { self.lists.place.get_unchecked(strip).assume_init() };
         unpack(word)
     }
@@ -153,7 +140,7 @@ impl<'a> Strips<'a> {
     /// Its first row of pixels, and the rows of sub-tiles from the box's first tile to it.
     #[inline(always)]
     pub fn rows(&self, strip: usize) -> (f32, i32) {
-        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
+        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
         unsafe {
             let sub_row = self.lists.sub_row.get_unchecked(strip).assume_init();
             (self.lists.top.get_unchecked(strip).assume_init(), sub_row as i32)
@@ -163,7 +150,7 @@ impl<'a> Strips<'a> {
     /// Depth bound's change from sub-tile to sub-tile, and its clamp.
     #[inline(always)]
     pub fn slope(&self, strip: usize) -> (f32, f32) {
-        // SAFETY: `next` wrote those of the strips that it counted, and only those are asked for.
+        // SAFETY: the strips up to `listed` were bounded, and only those are asked for.
         unsafe {
             (self.lists.across.get_unchecked(strip).assume_init(), self.lists.clamp.get_unchecked(strip).assume_init())
         }
@@ -178,10 +165,6 @@ impl<'a> Strips<'a> {
         clip: TileRect,
         batch: &Batch,
     ) -> Option<Open> {
-        if T::LANES == 8 && S::DRAWS && self.few {
-            // SAFETY: `new` saw that all that are alive are few.
-            return (self.todo != 0).then(|| unsafe { self.list_few::<T, S>(t, buffer, batch) });
-        }
         if self.next == self.listed {
             self.list::<T>(t);
             if self.listed == 0 {
@@ -296,49 +279,6 @@ impl<'a> Strips<'a> {
         }
         store!(i first, t.or(number, first));
         store!(i count, count);
-        let (across, clamp) = (of(&batch.z_across), of(&batch.z_clamp));
-        // SAFETY: the caller's contract.
-        unsafe {
-            let (tile_x0, tile_y0) = (of_i(&batch.tile_x0), of_i(&batch.tile_y0));
-            let placed = Placed { row, tile_x0, tile_y0, across, clamp, inner_first, inner };
-            self.place_strips::<T, S>(t, buffer, k, placed);
-        }
-        if height::<T>() == 1 {
-            store!(upper, nearest);
-        } else {
-            let middle = t.add(top, t.f(TILE_HEIGHT as f32));
-            let closed = t.f(CLOSED);
-            let upper = t.select(t.lt(y0, middle), nearest, closed);
-            let lower = t.select(t.le(middle, y1), nearest, closed);
-            store!(upper, upper);
-            store!(lower, lower);
-        }
-    }
-
-    /// Writes where a vector of strips from number `k` on is, and what they take of their triangles.
-    ///
-    /// # Safety
-    /// `k` is below `STRIPS`.
-    #[inline(always)]
-    pub(super) unsafe fn place_strips<T: Simd, S: TileStep<T>>(
-        &mut self,
-        t: T,
-        buffer: &Buffer,
-        k: usize,
-        placed: Placed<T>,
-    ) {
-        let Placed { row, tile_x0, tile_y0, across, clamp, inner_first, inner } = placed;
-        macro_rules! store {
-            ($list:ident, $value:expr) => {
-                // SAFETY: there is room for a vector after `STRIPS`.
-                unsafe { t.store_f(self.lists.$list.as_mut_ptr().add(k).cast(), $value) }
-            };
-            (i $list:ident, $value:expr) => {
-                // SAFETY: as above.
-                unsafe { t.store_i(self.lists.$list.as_mut_ptr().add(k).cast(), $value) }
-            };
-        }
-        let top = t.mul(t.to_f(row), t.f((height::<T>() * TILE_HEIGHT) as f32));
         // Exact: there are at most 2^20 tiles.
         let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
         if height::<T>() == 1 {
@@ -350,15 +290,25 @@ impl<'a> Strips<'a> {
             store!(i planes, planes_before::<T, S>(t, in_rows));
             store!(i index, t.shl::<1>(in_rows));
         }
-        store!(across, across);
-        store!(clamp, clamp);
-        store!(i sub_column, t.shl::<2>(tile_x0));
+        store!(across, of(&batch.z_across));
+        store!(clamp, of(&batch.z_clamp));
+        store!(i sub_column, t.shl::<2>(of_i(&batch.tile_x0)));
         store!(i inner_first, inner_first);
         store!(i inner, inner);
         store!(top, top);
         // Rows of sub-tiles below the box's first tile.
-        let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, tile_y0);
+        let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
         store!(i sub_row, t.shl::<1>(rows_below));
+        if height::<T>() == 1 {
+            store!(upper, nearest);
+        } else {
+            let middle = t.add(top, t.f(TILE_HEIGHT as f32));
+            let closed = t.f(CLOSED);
+            let upper = t.select(t.lt(y0, middle), nearest, closed);
+            let lower = t.select(t.le(middle, y1), nearest, closed);
+            store!(upper, upper);
+            store!(lower, lower);
+        }
     }
 
     /// Lists open tiles, as many as there is room for.

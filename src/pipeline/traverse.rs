@@ -60,7 +60,7 @@ pub(super) fn traverse<T: Simd, S: TileStep<T>>(t: T, way: Way<'_>, step: &mut S
     let Way { buffer, clip, batch, alive, lists } = way;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Lists { strips, rows } = unsafe { lists.assume_init_mut() };
-    let mut strips = Strips::new(t, strips, clip, batch, alive);
+    let mut strips = Strips::new(t, strips, clip, batch, alive.lanes);
     // By value, for who stores into a tile might have changed what stands behind a reference.
     let (first_planes, first_least, pitch) = (buffer.planes(), buffer.least(), buffer.tiles_w() as usize);
     while let Some(open) = strips.next::<T, S>(t, buffer, clip, batch) {
