@@ -88,13 +88,13 @@ impl<S: Simd> Boxes<S> {
         purpose: Purpose,
     ) -> S::M {
         let nearest = self.nearest;
-        if clip.x0 >= clip.x1 || clip.y0 >= clip.y1 {
-            // No tile of it could stand for the lanes that look at none.
-            return self.inside;
-        }
         let mut inside = self.inside;
         let [mut x0, mut x1, mut y0, mut y1] = [self.tile_x0, self.tile_x1, self.tile_y0, self.tile_y1];
         if clip != buffer.all_tiles() {
+            if clip.x0 >= clip.x1 || clip.y0 >= clip.y1 {
+                // No tile of it could stand for the lanes that look at none.
+                return self.inside;
+            }
             (x0, x1) = (s.max_i(x0, s.i(clip.x0 as i32)), s.min_i(x1, s.i(clip.x1 as i32 - 1)));
             (y0, y1) = (s.max_i(y0, s.i(clip.y0 as i32)), s.min_i(y1, s.i(clip.y1 as i32 - 1)));
             inside = s.and_not_m(s.or_m(s.gt_i(x0, x1), s.gt_i(y0, y1)), inside);
