@@ -109,8 +109,9 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         direct.clear_buffer().unwrap();
                     }
                     2 => {
-                        let (width, height) =
-                            [(200, 130), (640, 400), (33, 9), (257, 300)][numbers.next() as usize % 4];
+                        // A column of tiles or of areas, too, of which several rows of bins are made.
+                        let sizes = [(200, 130), (640, 400), (33, 9), (257, 300), (20, 300), (120, 400)];
+                        let (width, height) = sizes[numbers.next() as usize % sizes.len()];
                         pool.set_resolution(width, height).unwrap();
                         direct.set_resolution(width, height).unwrap();
                     }

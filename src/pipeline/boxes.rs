@@ -6,7 +6,7 @@
 
 use super::setup::{Purpose, VERTEX_MARGIN};
 use super::survivors::Corner;
-use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT};
+use crate::buffer::areas::{AREA_COLUMN_SHIFT, AREA_ROW_SHIFT, AREA_TILES_W};
 use crate::buffer::{Buffer, TileRect};
 use crate::simd::Simd;
 
@@ -98,10 +98,15 @@ impl<S: Simd> Boxes<S> {
             (x0, x1) = (s.max_i(x0, s.i(clip.x0 as i32)), s.min_i(x1, s.i(clip.x1 as i32 - 1)));
             (y0, y1) = (s.max_i(y0, s.i(clip.y0 as i32)), s.min_i(y1, s.i(clip.y1 as i32 - 1)));
             inside = s.and_not_m(s.or_m(s.gt_i(x0, x1), s.gt_i(y0, y1)), inside);
+            // What stands side by side is read in pairs, and beside the rectangle others may be writing.
+            if clip.x1 - clip.x0 < if with_areas { AREA_TILES_W + 1 } else { 2 } {
+                return s.and_not_m(inside, self.inside);
+            }
         }
         let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
         let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
         let (mut few, mut first, mut pitch) = (tiles, s.i(0), s.f(buffer.tiles_w() as f32));
+        let mut edge = s.i(clip.x0 as i32);
         let (mut left, mut right, mut top, mut bottom) = (x0, x1, y0, y1);
         if with_areas && s.mask_bits(s.and_not_m(tiles, inside)) != 0 {
             let or_area = |tile: S::I, area: S::I| s.select_i(tiles, tile, area);
@@ -109,6 +114,7 @@ impl<S: Simd> Boxes<S> {
             right = or_area(x1, s.sra::<AREA_COLUMN_SHIFT>(x1));
             top = or_area(y0, s.sra::<AREA_ROW_SHIFT>(y0));
             bottom = or_area(y1, s.sra::<AREA_ROW_SHIFT>(y1));
+            edge = or_area(edge, s.sra::<AREA_COLUMN_SHIFT>(edge));
             first = or_area(first, s.i(buffer.first_area() as i32));
             pitch = s.select(tiles, pitch, s.f(buffer.areas_w() as f32));
             few = s.and_m(inside, s.and_m(two(left, right), two(top, bottom)));
@@ -118,23 +124,27 @@ impl<S: Simd> Boxes<S> {
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
         let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
-        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile. After
-        // the last tile and the last area there is room; beside a rectangle, another thread may be writing.
-        let least = unsafe {
-            let one = |row: S::I, x: S::I| {
-                let index = at(row, x);
-                if RACING { s.gather_relaxed(buffer.least(), index) } else { s.gather(buffer.least(), index) }
-            };
-            if RACING || clip != buffer.all_tiles() {
-                s.min(s.min(one(top, left), one(top, right)), s.min(one(bottom, left), one(bottom, right)))
-            } else {
-                let [top, beside_top] = s.gather_pairs(buffer.least(), at(top, left));
-                let [bottom, beside_bottom] = s.gather_pairs(buffer.least(), at(bottom, left));
-                let (least, beside) = (s.min(top, bottom), s.min(beside_top, beside_bottom));
-                s.select(s.eq_i(left, right), least, s.min(least, beside))
-            }
-        };
+        // The column right of the box's first where it has two; else one more to the left, or on the left edge to the right.
+        let pair = s.max_i(s.sub_i(right, s.i(1)), edge);
+        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile, and it is
+        // two wide: beside it, another thread may be writing. After the last tile and the last area of all there is room.
+        let ([top0, top1], [bottom0, bottom1]) =
+            unsafe { (pairs::<S, RACING>(s, buffer, at(top, pair)), pairs::<S, RACING>(s, buffer, at(bottom, pair))) };
+        let (first, second) = (s.min(top0, bottom0), s.min(top1, bottom1));
+        let one = s.select(s.eq_i(pair, right), first, second);
+        let least = s.select(s.eq_i(left, right), one, s.min(first, second));
         let hidden = if purpose == Purpose::Query { s.lt(nearest, least) } else { s.le(nearest, least) };
         s.or_m(s.and_not_m(inside, self.inside), s.and_m(few, hidden))
     }
+}
+
+/// Least depths and those beside them.
+///
+/// # Safety
+/// Both can be read; nobody writes them, unless `RACING`: then as words.
+#[inline(always)]
+unsafe fn pairs<S: Simd, const RACING: bool>(s: S, buffer: &Buffer, index: S::I) -> [S::F; 2] {
+    let least = buffer.least();
+    // SAFETY: the caller's contract.
+    unsafe { if RACING { s.gather_pairs_relaxed(least, index) } else { s.gather_pairs(least, index) } }
 }

@@ -47,11 +47,29 @@ const VECTORS: usize = ROOM / 8;
 
 /// Triangles that have to be asked alike whether they face the eye.
 struct Block {
-    survivors: Box<Survivors>,
+    /// Vector by vector, x, y and 1/w of the three corners: one stream to write and to read, of which a piece of the screen
+    /// leaves out parts.
+    corners: Box<[f32; 9 * ROOM]>,
     both_sides: bool,
     vectors: usize,
     /// For each piece of the screen, for each vector, the triangles that reach it.
     reach: Vec<u16>,
+}
+
+impl Block {
+    fn range(k: usize, lanes: usize) -> core::ops::Range<usize> {
+        9 * lanes * k..9 * lanes * (k + 1)
+    }
+
+    #[inline(always)]
+    fn vector(&self, k: usize, lanes: usize) -> &[f32] {
+        &self.corners[Self::range(k, lanes)]
+    }
+
+    #[inline(always)]
+    fn vector_mut(&mut self, k: usize, lanes: usize) -> &mut [f32] {
+        &mut self.corners[Self::range(k, lanes)]
+    }
 }
 
 impl Kept {
@@ -73,11 +91,10 @@ impl Kept {
     #[cold]
     fn next_block(&mut self, both_sides: bool, pieces: usize) {
         if self.used == self.blocks.len() {
-            let survivors = Survivors::boxed();
-            self.blocks.push(Block { survivors, both_sides, vectors: 0, reach: Vec::new() });
+            let corners = Box::new([0.0; 9 * ROOM]);
+            self.blocks.push(Block { corners, both_sides, vectors: 0, reach: Vec::new() });
         }
         let block = &mut self.blocks[self.used];
-        block.survivors.clear();
         (block.both_sides, block.vectors) = (both_sides, 0);
         block.reach.resize(pieces * VECTORS, 0);
         self.used += 1;
@@ -139,8 +156,11 @@ impl LastStep for Keep<'_> {
                 block.reach[(row * self.cuts.columns.len() + column) * VECTORS + k] &= reach;
             }
         }
-        // SAFETY: the block has room for a vector.
-        unsafe { block.survivors.put(s, corners) };
+        let to = block.vector_mut(k, S::LANES).as_mut_ptr();
+        for (n, &x) in corners.as_flattened().iter().enumerate() {
+            // SAFETY: there is room for nine vectors.
+            unsafe { s.store_f(to.add(n * S::LANES), x) };
+        }
     }
 
     #[inline(always)]
@@ -174,7 +194,10 @@ pub(super) fn draw<'k, S: Simd, L: LastStep>(
             if reach == 0 {
                 continue;
             }
-            let corners = block.survivors.loaded(s, k * S::LANES);
+            let from = block.vector(k, S::LANES).as_ptr();
+            // SAFETY: nine vectors are there.
+            let load = |n: usize| unsafe { s.load_f(from.add(n * S::LANES)) };
+            let corners = [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]];
             // SAFETY: below a vector less than `ROOM` there is room.
             unsafe { survivors.append(s, lanes_of(s, u32::from(reach)), &corners) };
             if survivors.len() > ROOM - MAX_LANES {

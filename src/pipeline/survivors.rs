@@ -34,15 +34,6 @@ impl Survivors {
         }
     }
 
-    /// None yet, on the heap, all of it zeros.
-    pub fn boxed() -> Box<Self> {
-        Box::new(Self { lanes: [[MaybeUninit::new(0.0); ROOM + MAX_LANES]; 9], len: 0 })
-    }
-
-    pub fn clear(&mut self) {
-        self.len = 0;
-    }
-
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
@@ -79,23 +70,6 @@ impl Survivors {
         self.len += n;
     }
 
-    /// Appends a vector, all lanes of it.
-    ///
-    /// # Safety
-    /// There is room for it.
-    #[inline(always)]
-    pub unsafe fn put<S: Simd>(&mut self, s: S, corners: &[Corner<S>; 3]) {
-        debug_assert!(self.len + S::LANES <= ROOM + MAX_LANES);
-        for k in 0..9 {
-            // SAFETY: the caller's contract.
-            unsafe {
-                let to = self.lanes.get_unchecked_mut(k).as_mut_ptr().add(self.len);
-                s.store_f(to.cast(), corners[k / 3][k % 3]);
-            }
-        }
-        self.len += S::LANES;
-    }
-
     /// The vector of triangles from `first` on; what comes after the last is all zeros.
     #[inline(always)]
     pub fn vector<S: Simd>(&mut self, s: S, first: usize) -> [Corner<S>; 3] {
@@ -107,15 +81,6 @@ impl Survivors {
             }
         }
         // SAFETY: there is room for a vector after the last triangle, and what comes there was just written.
-        let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
-        [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
-    }
-
-    /// The same for one from [`Self::boxed`]; what comes after the last may be anything.
-    #[inline(always)]
-    pub fn loaded<S: Simd>(&self, s: S, first: usize) -> [Corner<S>; 3] {
-        assert!(first < self.len && self.len <= ROOM);
-        // SAFETY: there is room for a vector after the last triangle; all was written when the box was made.
         let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
         [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
     }

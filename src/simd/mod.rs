@@ -240,19 +240,21 @@ pub(crate) trait Simd: Copy {
         // SAFETY: the caller's contract.
         self.select_i(self.first(n), unsafe { self.load_some(p, n) }, self.i(fill as i32))
     }
-    /// [`Self::gather`] from words that other threads may be writing with [`store_relaxed`].
+    /// [`Self::gather_pairs`] of words that other threads may be writing with [`store_relaxed`].
     /// # Safety
-    /// Every `p + index` can be read.
+    /// As there.
     #[inline(always)]
-    unsafe fn gather_relaxed(self, p: *const f32, index: Self::I) -> Self::F {
-        let (mut indices, mut words) = ([0_u32; MAX_LANES], [0_u32; MAX_LANES]);
+    unsafe fn gather_pairs_relaxed(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
+        let (mut indices, mut words) = ([0_u32; MAX_LANES], [[0_u32; MAX_LANES]; 2]);
         // SAFETY: the arrays hold a vector; the caller's contract.
         unsafe {
             self.store_i(indices.as_mut_ptr(), index);
             for lane in 0..Self::LANES {
-                words[lane] = AtomicU32::from_ptr(p.add(indices[lane] as usize).cast_mut().cast()).load(Relaxed);
+                let at = p.add(indices[lane] as usize).cast_mut();
+                words[0][lane] = AtomicU32::from_ptr(at.cast()).load(Relaxed);
+                words[1][lane] = AtomicU32::from_ptr(at.add(1).cast()).load(Relaxed);
             }
-            self.load_f(words.as_ptr().cast())
+            words.map(|words| self.load_f(words.as_ptr().cast()))
         }
     }
     /// A mask of the first `n` lanes.
