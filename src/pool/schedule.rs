@@ -15,8 +15,10 @@ pub(super) const BATCH_WEIGHT: usize = 2048;
 pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch that weighs so much is worth a thread's while.
 pub(super) const WORTHWHILE: usize = 512;
-/// So many batches may be ready that some bin did not draw, before drawing goes first.
-const LEAD: u64 = 8;
+/// So many batches may be ready that a thread's own bin did not draw, before the thread draws them instead of keeping more.
+const LEAD: u64 = 3;
+/// The same of a bin that another thread drew in last, whose tiles are in the cache of that one.
+const STRANGERS_LEAD: u64 = 6;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
 
@@ -26,6 +28,14 @@ pub(super) enum Task<C, W> {
     Keep { batch: u64, calls: Vec<C> },
     /// Draw these into the bin, in order, and say so by [`Schedule::drawn`].
     Draw { bin: usize, work: Vec<W> },
+}
+
+/// Which bins a thread may take.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Whose {
+    /// Those that it drew in last, whose tiles are in its cache.
+    Own,
+    Any,
 }
 
 enum Stage<C, W> {
@@ -139,10 +149,13 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// Something to do for a thread, if there is.
     pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
-        let behind = self.bins.iter().map(|bin| bin.next).min().map_or(0, |next| self.ready.saturating_sub(next));
         // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
-        let ahead = if behind < LEAD { self.claim_batch(WORTHWHILE) } else { None };
-        ahead.or_else(|| self.claim_bin(thread)).or_else(|| self.claim_batch(0))
+        self.claim_bin(thread, Whose::Own, LEAD)
+            .or_else(|| self.claim_bin(thread, Whose::Any, STRANGERS_LEAD))
+            .or_else(|| self.claim_batch(WORTHWHILE))
+            .or_else(|| self.claim_bin(thread, Whose::Own, 1))
+            .or_else(|| self.claim_bin(thread, Whose::Any, 1))
+            .or_else(|| self.claim_batch(0))
     }
 
     /// The first batch that nobody keeps, unless it is the last one and weighs less.
@@ -165,12 +178,11 @@ impl<C, W: Clone> Schedule<C, W> {
         None
     }
 
-    /// A bin that is behind: of those that this thread drew in last, whose tiles are in its cache, or else of all, the one that is
-    /// most.
-    fn claim_bin(&mut self, thread: usize) -> Option<Task<C, W>> {
-        let free = |bin: &Bin| !bin.busy && bin.next < self.ready;
-        let order = |&k: &usize| (self.bins[k].thread != thread, self.bins[k].next);
-        let bin = (0..self.bins.len()).filter(|&k| free(&self.bins[k])).min_by_key(order)?;
+    /// The bin that is most behind, by so many batches at least.
+    fn claim_bin(&mut self, thread: usize, whose: Whose, least: u64) -> Option<Task<C, W>> {
+        let free = |bin: &Bin| !bin.busy && bin.next + least <= self.ready;
+        let wanted = |bin: &Bin| free(bin) && (whose == Whose::Any || bin.thread == thread);
+        let bin = (0..self.bins.len()).filter(|&k| wanted(&self.bins[k])).min_by_key(|&k| self.bins[k].next)?;
         self.bins[bin].thread = thread;
         let next = self.bins[bin].next;
         let from = (next - self.first) as usize;
