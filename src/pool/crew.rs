@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
 
+use super::processor::Processor;
 use super::schedule::{Schedule, Task};
 use super::sync::{Arc, Condvar, Glance, Mutex, MutexGuard};
 use super::target::{Call, Target, Work};
@@ -30,6 +31,8 @@ struct State {
     /// Threads that wait for work, and how many of them were woken and are not awake yet.
     idle: usize,
     woken: usize,
+    /// Where the last to wake one ran.
+    waker: Option<Processor>,
     /// Threads that wait for progress.
     waiting: usize,
     suspended: bool,
@@ -45,6 +48,7 @@ impl Crew {
             spare: Vec::new(),
             idle: 0,
             woken: 0,
+            waker: None,
             waiting: 0,
             suspended: true,
             stopped: false,
@@ -60,6 +64,8 @@ impl Crew {
     /// The way of a thread of the pool, until [`Self::stop`].
     pub fn work(&self, number: usize) {
         let mut state = self.lock();
+        // Woken on the processor of who woke it, the last time.
+        let mut in_turn = false;
         while !state.stopped {
             let task = if state.suspended { None } else { state.schedule.claim(number) };
             state = match task {
@@ -69,6 +75,16 @@ impl Crew {
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
                     state.idle -= 1;
                     state.woken = state.woken.saturating_sub(1);
+                    let shared = Processor::current().filter(|&here| state.waker == Some(here));
+                    if let Some(here) = shared
+                        && in_turn
+                    {
+                        drop(state);
+                        here.leave();
+                        state = self.lock();
+                    }
+                    // Once may be chance.
+                    in_turn = shared.is_some() && !in_turn;
                     state
                 }
             };
@@ -80,6 +96,7 @@ impl Crew {
     fn wake(&self, state: &mut State) {
         if state.idle > state.woken && !state.suspended && state.schedule.has_work() {
             state.woken += 1;
+            state.waker = Processor::current();
             self.work.notify_one();
         }
     }
