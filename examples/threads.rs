@@ -1,6 +1,6 @@
-//! How many times faster the pool draws than one thread, and how much of what the machine could give that is: as many threads
-//! that have nothing to do with each other, each drawing the whole frame into an object of its own, get that much done at most.
-//! Processors share caches and memory, and one that is lent by a hypervisor may be half of one.
+//! How many times faster the pool draws than one thread, and how much of what the machine gives that is: of what as many threads
+//! get done that have nothing to do with each other, each drawing the whole frame into an object of its own. Processors share
+//! caches and memory, and one that is lent by a hypervisor may be half of one.
 //!
 //! The benches' scenes, nearest first, all three ways in turn; medians of each round's ratios. Fails where a pixel differs.
 
@@ -9,7 +9,7 @@ mod common;
 #[path = "shared/options.rs"]
 mod options;
 
-use std::sync::Barrier;
+use std::sync::RwLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -23,7 +23,7 @@ use options::{Isa, Rule};
 #[command(name = "threads")]
 struct Args {
     /// Threads at work, the caller's included (default: 2, 4, 8, ... up to the number of processors).
-    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u32).range(2..=1024))]
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u32).range(2..=256))]
     threads: Vec<u32>,
     /// How often all is measured.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
@@ -36,7 +36,7 @@ struct Args {
     isa: Isa,
 }
 
-/// Frames that are measured together take this long at least: a thread takes tens of microseconds to wake.
+/// One thread's frames that are measured together take this long: a thread takes tens of microseconds to wake.
 const AT_LEAST: Duration = Duration::from_millis(10);
 
 /// Draws a frame.
@@ -62,25 +62,33 @@ fn seconds(frames: u32, mut draw: impl FnMut()) -> f64 {
     begin.elapsed().as_secs_f64()
 }
 
-/// Every object gets the frame drawn by a thread of its own, all at once.
+/// Every object gets the frame drawn by a thread of its own, all at once: from the first begin to the last end.
 fn copies(view: &View, frames: u32, objects: &mut [MaskedOcclusionCulling]) -> f64 {
-    let (first, others) = objects.split_first_mut().expect("there are two at least");
-    let barrier = Barrier::new(others.len() + 1);
-    thread::scope(|scope| {
-        for moc in others {
-            let barrier = &barrier;
-            scope.spawn(move || {
-                barrier.wait();
-                seconds(frames, || frame(view, moc));
-                barrier.wait();
-            });
-        }
-        barrier.wait();
+    let draw = |moc: &mut MaskedOcclusionCulling| {
         let begin = Instant::now();
-        seconds(frames, || frame(view, first));
-        barrier.wait();
-        begin.elapsed().as_secs_f64()
-    })
+        seconds(frames, || frame(view, moc));
+        (begin, Instant::now())
+    };
+    let (first, others) = objects.split_first_mut().expect("there are two at least");
+    let gate = RwLock::new(());
+    let times: Vec<(Instant, Instant)> = thread::scope(|scope| {
+        // Opened, too, if a thread cannot be started.
+        let closed = gate.write();
+        let drawn: Vec<_> = others
+            .iter_mut()
+            .map(|moc| {
+                scope.spawn(|| {
+                    drop(gate.read());
+                    draw(moc)
+                })
+            })
+            .collect();
+        drop(closed);
+        let own = draw(first);
+        drawn.into_iter().map(|thread| thread.join().expect("it draws only")).chain([own]).collect()
+    });
+    let begin = times.iter().map(|time| time.0).min().expect("there are two at least");
+    times.iter().map(|time| (time.1 - begin).as_secs_f64()).fold(0.0, f64::max)
 }
 
 fn median(mut numbers: Vec<f64>) -> f64 {
@@ -102,12 +110,13 @@ fn measure(
     object: impl Fn() -> MaskedOcclusionCulling,
 ) -> (Vec<[f64; 2]>, usize) {
     let mut objects: Vec<MaskedOcclusionCulling> = (0..threads).map(|_| object()).collect();
-    let pool = CullingThreadpool::new(threads - 1, 4, 4, 32).expect("threads can be started");
+    let pool = CullingThreadpool::with_processors(threads - 1, 4, 4, 32, threads).expect("threads can be started");
     let mut pooled = object();
     pooled.set_near_clip_plane(view.near).expect("a number");
     pool.set_buffer(pooled);
     pool.wake_threads();
     pool_frame(view, &pool);
+    objects.iter_mut().for_each(|moc| frame(view, moc));
     let once = seconds(2, || frame(view, &mut objects[0])) / 2.0;
     let frames = (AT_LEAST.as_secs_f64() / once).ceil() as u32;
     let speeds = (0..rounds)

@@ -18,7 +18,9 @@ mod processor {
             Some(Self)
         }
 
-        pub fn leave(self) {}
+        pub fn leave(self) -> bool {
+            true
+        }
     }
 }
 

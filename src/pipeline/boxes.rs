@@ -84,7 +84,7 @@ impl<S: Simd> Boxes<S> {
         &self,
         s: S,
         buffer: &Buffer,
-        Look { clip, areas: with_areas }: Look,
+        Look { clip, areas: mut with_areas }: Look,
         purpose: Purpose,
     ) -> S::M {
         let nearest = self.nearest;
@@ -99,9 +99,11 @@ impl<S: Simd> Boxes<S> {
             (y0, y1) = (s.max_i(y0, s.i(clip.y0 as i32)), s.min_i(y1, s.i(clip.y1 as i32 - 1)));
             inside = s.and_not_m(s.or_m(s.gt_i(x0, x1), s.gt_i(y0, y1)), inside);
             // What stands side by side is read in pairs, and beside the rectangle others may be writing.
-            if clip.x1 - clip.x0 < if with_areas { AREA_TILES_W + 1 } else { 2 } {
+            let width = clip.x1 - clip.x0;
+            if width < 2 {
                 return s.and_not_m(inside, self.inside);
             }
+            with_areas &= width > AREA_TILES_W;
         }
         let two = |a: S::I, b: S::I| s.gt_i(s.i(2), s.sub_i(b, a));
         let tiles = s.and_m(inside, s.and_m(two(x0, x1), two(y0, y1)));
@@ -124,10 +126,12 @@ impl<S: Simd> Boxes<S> {
         let (top, bottom) = (row(top), row(bottom));
         let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
         let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
-        // The column right of the box's first where it has two; else one more to the left, or on the left edge to the right.
+        // Where the two columns begin that are read: with the box's first where it has two, else with the one to its left, or
+        // on the left edge with itself.
         let pair = s.max_i(s.sub_i(right, s.i(1)), edge);
-        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes name its first tile, and it is
-        // two wide: beside it, another thread may be writing. After the last tile and the last area of all there is room.
+        // SAFETY: a box that holds a pixel names tiles or areas of the rectangle, the other lanes its first tile. A rectangle
+        // beside which another thread may be writing is two wide, in areas, too, if they are looked at; in the whole
+        // buffer the second of a pair may be the next row's, and after the last tile and the last area there is room.
         let ([top0, top1], [bottom0, bottom1]) =
             unsafe { (pairs::<S, RACING>(s, buffer, at(top, pair)), pairs::<S, RACING>(s, buffer, at(bottom, pair))) };
         let (first, second) = (s.min(top0, bottom0), s.min(top1, bottom1));

@@ -45,11 +45,15 @@ pub(crate) struct Kept {
 /// No instruction set has shorter vectors in the pipeline.
 const VECTORS: usize = ROOM / 8;
 
+/// A vector's loads touch one cache line each, or two.
+#[repr(align(64))]
+struct Corners([f32; 9 * ROOM]);
+
 /// Triangles that have to be asked alike whether they face the eye.
 struct Block {
     /// Vector by vector, x, y and 1/w of the three corners: one stream to write and to read, of which a piece of the screen
     /// leaves out parts.
-    corners: Box<[f32; 9 * ROOM]>,
+    corners: Box<Corners>,
     both_sides: bool,
     vectors: usize,
     /// For each piece of the screen, for each vector, the triangles that reach it.
@@ -63,12 +67,12 @@ impl Block {
 
     #[inline(always)]
     fn vector(&self, k: usize, lanes: usize) -> &[f32] {
-        &self.corners[Self::range(k, lanes)]
+        &self.corners.0[Self::range(k, lanes)]
     }
 
     #[inline(always)]
     fn vector_mut(&mut self, k: usize, lanes: usize) -> &mut [f32] {
-        &mut self.corners[Self::range(k, lanes)]
+        &mut self.corners.0[Self::range(k, lanes)]
     }
 }
 
@@ -91,7 +95,7 @@ impl Kept {
     #[cold]
     fn next_block(&mut self, both_sides: bool, pieces: usize) {
         if self.used == self.blocks.len() {
-            let corners = Box::new([0.0; 9 * ROOM]);
+            let corners = Box::new(Corners([0.0; 9 * ROOM]));
             self.blocks.push(Block { corners, both_sides, vectors: 0, reach: Vec::new() });
         }
         let block = &mut self.blocks[self.used];
@@ -122,6 +126,7 @@ impl LastStep for Keep<'_> {
 
     #[inline(always)]
     fn keep<S: Simd>(&mut self, setup: Setup<'_, S>, corners: &[Corner<S>; 3], active: S::M) {
+        const { assert!(S::LANES * VECTORS >= ROOM) }
         let Setup { s, buffer, .. } = setup;
         let [a, b, c] = corners;
         let mut open = active;

@@ -64,8 +64,8 @@ impl Crew {
     /// The way of a thread of the pool, until [`Self::stop`].
     pub fn work(&self, number: usize) {
         let mut state = self.lock();
-        // Woken on the processor of who woke it, the last time.
-        let mut in_turn = false;
+        // Woken on the processor of who woke it the last time, and did not leave it.
+        let (mut in_turn, mut may_leave) = (false, true);
         while !state.stopped {
             let task = if state.suspended { None } else { state.schedule.claim(number) };
             state = match task {
@@ -75,12 +75,15 @@ impl Crew {
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
                     state.idle -= 1;
                     state.woken = state.woken.saturating_sub(1);
-                    let shared = Processor::current().filter(|&here| state.waker == Some(here));
+                    // Taken, so that it does not count again where all are woken.
+                    let waker = state.waker.take();
+                    let shared = Processor::current().filter(|&here| waker == Some(here));
                     if let Some(here) = shared
                         && in_turn
+                        && may_leave
                     {
                         drop(state);
-                        here.leave();
+                        may_leave = here.leave();
                         state = self.lock();
                     }
                     // Once may be chance.

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
-//! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `processor.rs` keeps
-//! them off each other's processors, `target.rs` has the bins and their locks, `grid.rs` the pieces of the screen.
+//! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `processor.rs` moves one
+//! that is woken on its waker's processor, `target.rs` has the bins and their locks, `grid.rs` the pieces of the screen.
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
 //! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller

@@ -17,24 +17,26 @@ impl Processor {
         usize::try_from(unsafe { libc::sched_getcpu() }).ok().map(Self)
     }
 
-    /// Moves the calling thread to another one of those that it may run on, if there is one. It may come back.
-    pub fn leave(self) {
+    /// Moves the calling thread to another one of those that it may run on, if there is one; it may come back. False: not
+    /// again, for that did not work.
+    ///
+    /// On newer kernels the thread then keeps to the processors that there were, if others are added to the machine.
+    #[must_use]
+    pub fn leave(self) -> bool {
         let size = size_of::<libc::cpu_set_t>();
         if self.0 >= 8 * size {
-            return;
+            return false;
         }
         // SAFETY: a set is an array of integers, for which zeros will do, and `size` is its size; the number is one of its
         // bits. 0 is the calling thread.
         unsafe {
             let mut all: libc::cpu_set_t = core::mem::zeroed();
             if libc::sched_getaffinity(0, size, &mut all) != 0 || libc::CPU_COUNT(&all) < 2 {
-                return;
+                return false;
             }
             let mut others = all;
             libc::CPU_CLR(self.0, &mut others);
-            if libc::sched_setaffinity(0, size, &others) == 0 {
-                libc::sched_setaffinity(0, size, &all);
-            }
+            libc::sched_setaffinity(0, size, &others) == 0 && libc::sched_setaffinity(0, size, &all) == 0
         }
     }
 }
@@ -45,7 +47,9 @@ impl Processor {
         None
     }
 
-    pub fn leave(self) {}
+    pub fn leave(self) -> bool {
+        false
+    }
 }
 
 #[cfg(all(test, target_os = "linux"))]
@@ -64,10 +68,11 @@ mod tests {
     #[test]
     fn who_leaves_a_processor_may_run_on_it_as_before() {
         let before = allowed();
-        Processor::current().unwrap().leave();
+        // With one processor there is none to go to.
+        let _ = Processor::current().unwrap().leave();
         // SAFETY: both are sets.
         assert!(unsafe { libc::CPU_EQUAL(&before, &allowed()) });
-        Processor(usize::MAX).leave();
+        assert!(!Processor(usize::MAX).leave());
         // SAFETY: as above.
         assert!(unsafe { libc::CPU_EQUAL(&before, &allowed()) });
     }

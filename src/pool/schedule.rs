@@ -17,7 +17,7 @@ pub(super) const CALL_WEIGHT: usize = 16;
 pub(super) const WORTHWHILE: usize = 512;
 /// So many batches may be ready that a thread's own bin did not draw, before the thread draws them instead of keeping more.
 const LEAD: u64 = 3;
-/// The same of a bin that another thread drew in last, whose tiles are in the cache of that one.
+/// The same of a bin that another thread drew in last, whose tiles are in the cache of that one, or that nobody drew in yet.
 const STRANGERS_LEAD: u64 = 6;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
@@ -178,7 +178,7 @@ impl<C, W: Clone> Schedule<C, W> {
         None
     }
 
-    /// The bin that is most behind, by so many batches at least.
+    /// The bin, of those that nobody draws in, that is most behind, by so many batches at least.
     fn claim_bin(&mut self, thread: usize, whose: Whose, least: u64) -> Option<Task<C, W>> {
         let free = |bin: &Bin| !bin.busy && bin.next + least <= self.ready;
         let wanted = |bin: &Bin| free(bin) && (whose == Whose::Any || bin.thread == thread);
