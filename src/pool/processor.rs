@@ -1,9 +1,9 @@
 //! On which processor a thread runs.
 //!
 //! A thread that is woken should work beside who woke it, not in turn with it. Linux sees to that, but as the guest of a
-//! hypervisor it may take a processor that sleeps for one that it was not given: then a thread is now and then woken on the
-//! processor of who wakes it, and from then on every time, because it ran there last and frames are too short for loads to
-//! be balanced. A pool of one thread drew a castle at half of its speed then, frame after frame.
+//! hypervisor it seems to take a processor that sleeps for one that it was not given: now and then a thread was woken on the
+//! processor of who woke it, and then again and again, for it ran there last and frames are too short for loads to be
+//! balanced. A pool of one thread drew a castle at half of its speed then, frame after frame.
 
 /// A processor's number.
 #[derive(Clone, Copy, PartialEq, Eq)]
