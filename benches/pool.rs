@@ -32,14 +32,7 @@ fn pool(c: &mut Criterion) {
             pool.set_buffer(moc);
             pool.wake_threads();
             group.bench_function(BenchmarkId::new(format!("{threads} threads"), view.name), |b| {
-                b.iter(|| {
-                    pool.scope(|scope| {
-                        pool.clear_buffer().expect("there is a buffer");
-                        for object in &view.objects {
-                            scope.render_triangles(vertices, object, &view.options).expect("indices are right");
-                        }
-                    });
-                });
+                b.iter(|| view.pool_frame(&pool));
             });
         }
     }

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use common::{HEIGHT, Order, View, WIDTH, views};
-use masked_occlusion_culling::{CullingThreadpool, MaskedOcclusionCulling, Settings, Vertices};
+use masked_occlusion_culling::{CullingThreadpool, MaskedOcclusionCulling, Settings};
 use options::{Isa, Rule};
 
 /// Measures the pool of threads beside one thread, and beside threads that share nothing.
@@ -45,17 +45,6 @@ fn frame(view: &View, moc: &mut MaskedOcclusionCulling) {
     view.draw(moc);
 }
 
-/// Draws a frame by the pool.
-fn pool_frame(view: &View, pool: &CullingThreadpool) {
-    let vertices = Vertices::from_positions(&view.positions);
-    pool.scope(|scope| {
-        pool.clear_buffer().expect("there is a buffer");
-        for object in &view.objects {
-            scope.render_triangles(vertices, object, &view.options).expect("the mesh is sound");
-        }
-    });
-}
-
 fn seconds(frames: u32, mut draw: impl FnMut()) -> f64 {
     let begin = Instant::now();
     (0..frames).for_each(|_| draw());
@@ -66,7 +55,7 @@ fn seconds(frames: u32, mut draw: impl FnMut()) -> f64 {
 fn copies(view: &View, frames: u32, objects: &mut [MaskedOcclusionCulling]) -> f64 {
     let draw = |moc: &mut MaskedOcclusionCulling| {
         let begin = Instant::now();
-        seconds(frames, || frame(view, moc));
+        (0..frames).for_each(|_| frame(view, moc));
         (begin, Instant::now())
     };
     let (first, others) = objects.split_first_mut().expect("there are two at least");
@@ -88,7 +77,8 @@ fn copies(view: &View, frames: u32, objects: &mut [MaskedOcclusionCulling]) -> f
         drawn.into_iter().map(|thread| thread.join().expect("it draws only")).chain([own]).collect()
     });
     let begin = times.iter().map(|time| time.0).min().expect("there are two at least");
-    times.iter().map(|time| (time.1 - begin).as_secs_f64()).fold(0.0, f64::max)
+    let end = times.iter().map(|time| time.1).max().expect("there are two at least");
+    (end - begin).as_secs_f64()
 }
 
 fn median(mut numbers: Vec<f64>) -> f64 {
@@ -115,14 +105,14 @@ fn measure(
     pooled.set_near_clip_plane(view.near).expect("a number");
     pool.set_buffer(pooled);
     pool.wake_threads();
-    pool_frame(view, &pool);
+    view.pool_frame(&pool);
     objects.iter_mut().for_each(|moc| frame(view, moc));
     let once = seconds(2, || frame(view, &mut objects[0])) / 2.0;
     let frames = (AT_LEAST.as_secs_f64() / once).ceil() as u32;
     let speeds = (0..rounds)
         .map(|_| {
             let one = seconds(frames, || frame(view, &mut objects[0]));
-            let pool = seconds(frames, || pool_frame(view, &pool));
+            let pool = seconds(frames, || view.pool_frame(&pool));
             [one / pool, f64::from(threads) * one / copies(view, frames, &mut objects)]
         })
         .collect();

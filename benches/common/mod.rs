@@ -6,7 +6,9 @@ pub mod scenes;
 
 use fastrand::Rng;
 use glam::Mat4;
-use masked_occlusion_culling::{DrawOptions, MaskedOcclusionCulling, Settings, UpdateRule, Vertices};
+use masked_occlusion_culling::{
+    CullingThreadpool, DrawOptions, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
+};
 
 use scenes::{Scene, town};
 
@@ -60,6 +62,17 @@ impl View {
         for object in &self.objects {
             moc.render_triangles(vertices, object, &self.options).expect("the mesh is sound");
         }
+    }
+
+    /// A frame by a pool, whose object has the near plane: clears, draws all objects and flushes.
+    pub fn pool_frame(&self, pool: &CullingThreadpool) {
+        let vertices = Vertices::from_positions(&self.positions);
+        pool.scope(|scope| {
+            pool.clear_buffer().expect("there is a buffer");
+            for object in &self.objects {
+                scope.render_triangles(vertices, object, &self.options).expect("the mesh is sound");
+            }
+        });
     }
 }
 

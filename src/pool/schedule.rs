@@ -30,14 +30,6 @@ pub(super) enum Task<C, W> {
     Draw { bin: usize, work: Vec<W> },
 }
 
-/// Which bins a thread may take.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Whose {
-    /// Those that it drew in last, whose tiles are in its cache.
-    Own,
-    Any,
-}
-
 enum Stage<C, W> {
     /// Takes calls while it is the last; with their weight.
     Open(Vec<C>, usize),
@@ -149,12 +141,16 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// Something to do for a thread, if there is.
     pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
+        // A bin that the thread drew in last has its tiles in the thread's cache.
+        let own = self.most_behind(|bin| bin.thread == thread);
+        let any = self.most_behind(|_| true);
+        let far = |bin: Option<usize>, lead: u64| bin.filter(|&k| self.bins[k].next + lead <= self.ready);
         // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
-        self.claim_bin(thread, Whose::Own, LEAD)
-            .or_else(|| self.claim_bin(thread, Whose::Any, STRANGERS_LEAD))
-            .or_else(|| self.claim_batch(WORTHWHILE))
-            .or_else(|| self.claim_bin(thread, Whose::Own, 1))
-            .or_else(|| self.claim_bin(thread, Whose::Any, 1))
+        if let Some(bin) = far(own, LEAD).or(far(any, STRANGERS_LEAD)) {
+            return Some(self.claim_bin(bin, thread));
+        }
+        self.claim_batch(WORTHWHILE)
+            .or_else(|| own.or(any).map(|bin| self.claim_bin(bin, thread)))
             .or_else(|| self.claim_batch(0))
     }
 
@@ -178,11 +174,19 @@ impl<C, W: Clone> Schedule<C, W> {
         None
     }
 
-    /// The bin, of those that nobody draws in, that is most behind, by so many batches at least.
-    fn claim_bin(&mut self, thread: usize, whose: Whose, least: u64) -> Option<Task<C, W>> {
-        let free = |bin: &Bin| !bin.busy && bin.next + least <= self.ready;
-        let wanted = |bin: &Bin| free(bin) && (whose == Whose::Any || bin.thread == thread);
-        let bin = (0..self.bins.len()).filter(|&k| wanted(&self.bins[k])).min_by_key(|&k| self.bins[k].next)?;
+    /// Is there something to draw in a bin that nobody draws in?
+    fn is_due(&self, bin: &Bin) -> bool {
+        !bin.busy && bin.next < self.ready
+    }
+
+    /// Of the bins that are due and wanted the one that is most behind.
+    fn most_behind(&self, wanted: impl Fn(&Bin) -> bool) -> Option<usize> {
+        let due = |&k: &usize| self.is_due(&self.bins[k]) && wanted(&self.bins[k]);
+        (0..self.bins.len()).filter(due).min_by_key(|&k| self.bins[k].next)
+    }
+
+    /// What there is to draw in a bin that is due.
+    fn claim_bin(&mut self, bin: usize, thread: usize) -> Task<C, W> {
         self.bins[bin].thread = thread;
         let next = self.bins[bin].next;
         let from = (next - self.first) as usize;
@@ -194,15 +198,14 @@ impl<C, W: Clone> Schedule<C, W> {
         let work: Vec<W> = self.batches.range(from..to).filter_map(ready).collect();
         debug_assert_eq!(work.len(), to - from);
         self.bins[bin].busy = true;
-        Some(Task::Draw { bin, work })
+        Task::Draw { bin, work }
     }
 
     /// Would [`Self::claim`] find something?
     pub fn has_work(&self) -> bool {
         let unkept = self.batches.range((self.open - self.first) as usize..);
         let mut unkept = unkept.map(|batch| &batch.stage);
-        unkept.any(|stage| matches!(stage, Stage::Open(..)))
-            || self.bins.iter().any(|bin| !bin.busy && bin.next < self.ready)
+        unkept.any(|stage| matches!(stage, Stage::Open(..))) || self.bins.iter().any(|bin| self.is_due(bin))
     }
 
     /// A batch was kept.
