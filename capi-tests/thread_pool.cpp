@@ -573,8 +573,11 @@ void Buffers()
     pool.SetNearClipPlane(0.5f);
     MOC *one = Make(300, 200), *first = Make(0, 0), *second = Make(300, 200);
     one->SetNearClipPlane(0.5f);
+    second->SetNearClipPlane(0.5f);
     Direct direct(one);
     pool.SetBuffer(first);
+    CHECK(first->GetNearClipPlane() == 0.0f); // an object keeps its own
+    pool.SetNearClipPlane(0.5f);
     CHECK(first->GetNearClipPlane() == 0.5f);
     nothing();
     pool.SetResolution(300, 200);

@@ -2,6 +2,7 @@
 // boxes are tested. The buffer is the same, to the bit, as when one thread draws everything.
 #include "CullingThreadpool.h"
 
+#include <atomic>
 #include <cstdio>
 #include <thread>
 #include <vector>
@@ -59,28 +60,34 @@ int main() {
     for (int frame = 0; frame < 3; ++frame) {
         // A frame. Matrices are copied; vertices and indices must stay as they are until Flush. With a matrix the
         // third offset of the layout is that of z.
+        const Moc::VertexLayout layout(sizeof(Position), 4, 8);
         pool.ClearBuffer();
-        pool.SetVertexLayout(Moc::VertexLayout(sizeof(Position), 4, 8));
-        for (const Box &box : occluders) {
-            pool.SetMatrix(ModelToClip(box).data());
-            pool.RenderTriangles(&kCorners[0].x, kFaces, 12);
-        }
+        for (const Box &box : occluders)
+            pool.RenderTriangles(&kCorners[0].x, kFaces, 12, ModelToClip(box).data(), Moc::BACKFACE_CW,
+                                 Moc::CLIP_PLANE_ALL, layout);
 
         // Here the engine does something else while the threads draw. What is not drawn yet hides nothing, so that
         // a test before Flush culls less, but never what can be seen.
         pool.Flush();
 
-        // Occludees, after the Flush. Any number of threads may test at once.
+        // Occludees, after the Flush. Any number of threads may test at once, each with matrices of its own.
         const auto occluded = [&](const Box &box) {
-            pool.SetMatrix(ModelToClip(box).data());
-            return pool.TestTriangles(&kCorners[0].x, kFaces, 12) == Moc::OCCLUDED;
+            return pool.TestTriangles(&kCorners[0].x, kFaces, 12, ModelToClip(box).data(), Moc::BACKFACE_CW,
+                                      Moc::CLIP_PLANE_ALL, layout) == Moc::OCCLUDED;
         };
         behindWall = occluded({{0, 0, -130}, {1, 1, 1}});
         onStreet = occluded({{0, 0, -60}, {1, 1, 1}});
         behindHouses = occluded({{-30, 0, -60}, {1, 1, 1}});
         hidden = 0;
-        for (int i = 0; i < 1000; ++i)
-            hidden += occluded({{-30 + 2.0f * (i % 31), -2, -10.0f - 0.15f * i}, {0.5f, 0.5f, 0.5f}});
+        std::vector<std::thread> testers;
+        std::atomic<size_t> found(0);
+        for (int tester = 0; tester < 2; ++tester)
+            testers.emplace_back([&, tester] {
+                for (int i = tester; i < 1000; i += 2)
+                    found += occluded({{-30 + 2.0f * (i % 31), -2, -10.0f - 0.15f * i}, {0.5f, 0.5f, 0.5f}});
+            });
+        for (std::thread &tester : testers) tester.join();
+        hidden = found;
     }
 
     std::printf("behind the wall:      %s\n", behindWall ? "occluded" : "visible");

@@ -14,22 +14,30 @@
  *         moc->TestRect(...) or pool.TestRect(...)
  *
  * Calls take effect in their order, and the buffer gets the same bits as from one thread, whatever the number of
- * threads and bins. RenderTriangles returns at once: its arrays have to stay as they are until Flush; matrices are
- * copied. The object that the pool draws into may be used directly after a Flush, while nobody calls the pool.
+ * threads and bins. RenderTriangles returns at once. Its arrays have to stay as they are until Flush, ClearBuffer,
+ * SetNearClipPlane, SetBuffer or SetResolution returns (each waits until everything that was submitted is drawn), or
+ * until maxJobs later calls have returned: a program that goes round among maxJobs + 1 arrays needs no Flush. Matrices
+ * are copied.
  *
- * The threads sleep when there is nothing to do, between SuspendThreads and WakeThreads, and before the first
- * WakeThreads. Whoever flushes a pool whose threads are suspended does their work. A pool may be destroyed at any
- * time: it draws what was submitted first, for which arrays and object still have to be there, and ends its threads.
+ * While a thread of the pool is awake, what was submitted is drawn without another call. With none awake, or none at
+ * all, it waits for WakeThreads, Flush, SuspendThreads or WorkOnce. The threads sleep when there is nothing to do,
+ * between SuspendThreads and WakeThreads, and before the first WakeThreads.
  *
- * Several threads may call everything at once but the destructor; matrix and vertex layout are the pool's, so that
- * threads that want different ones take turns. TestRect and TestTriangles answer from what is drawn by now: what was
- * submitted and is not drawn yet hides nothing, and neither does what was drawn before a ClearBuffer.
+ * The object that the pool draws into may be queried directly at any time, by any thread. It may be drawn into
+ * directly while nobody calls the pool: its methods wait for what is in flight first. Pool and object may be destroyed
+ * in either order; whichever goes first, what was submitted is drawn before, for which the arrays still have to be
+ * there.
+ *
+ * Several threads may call everything at once but the destructor. SetMatrix and SetVertexLayout are for the calls of
+ * the thread that makes them; a thread that never made one has what any thread set last. The overloads with a matrix
+ * need neither. TestRect and TestTriangles answer from what is drawn by now: what was submitted and is not drawn yet
+ * hides nothing.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 #pragma once
 
-// Not used here, but the header that this one stands in for has them, and programs rely on it.
+// Not used here, but the header that this one replaces has them, and programs rely on it.
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -48,8 +56,10 @@ public:
     /**
      * numThreads: threads besides those that call; 0 is allowed, and where there are fewer processors besides the
      * caller's, there are fewer threads, but one at least. binsW times binsH: the pieces into which the screen is cut;
-     * there are no more than four a thread, and none is smaller than 128x64 pixels. maxJobs: batches of calls that may
-     * be in flight; a caller who finds no room works until there is. numProcessors: 0 asks the system.
+     * there are no more than four per thread, and none is smaller than 128x64 pixels. maxJobs: calls whose arrays may
+     * still be read when RenderTriangles returns; where there would be more, the caller works until there are not. Small
+     * calls are gathered into batches of half as many at most, so that more jobs make them cheaper. numProcessors: 0 asks
+     * the system.
      *
      * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
      * none, and Flush does the work.
@@ -62,6 +72,16 @@ public:
             MOC_ThreadpoolCreate(0, w, h, jobs, numProcessors, &mPool);
     }
 
+    /**
+     * The same with more settings: for pools whose work is done by the threads of the program's own job system, names of
+     * threads, and a callback when one starts. Where they are refused, the pool has no threads and one bin.
+     */
+    explicit CullingThreadpool(const MOC_ThreadpoolSettings &settings)
+    {
+        if (MOC_ThreadpoolCreateFrom(&settings, &mPool) != MOC_STATUS_OK)
+            MOC_ThreadpoolCreate(0, 1, 1, 32, 0, &mPool);
+    }
+
     /** Draws what was submitted, and ends the threads. */
     ~CullingThreadpool() { MOC_ThreadpoolDestroy(mPool); }
 
@@ -71,32 +91,71 @@ public:
     /** Lets the threads work. */
     void WakeThreads() { MOC_ThreadpoolWakeThreads(mPool); }
 
-    /** Lets the threads sleep. What is submitted meanwhile waits for WakeThreads or Flush. */
+    /** Draws what was submitted, and lets the threads sleep. */
     void SuspendThreads() { MOC_ThreadpoolSuspendThreads(mPool); }
 
     /** Waits until everything that was submitted is drawn. */
     void Flush() { MOC_ThreadpoolFlush(mPool); }
 
-    /** Draws into this object from now on, after what was submitted is drawn. */
+    /**
+     * Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of the program's own
+     * job system. False: there is nothing to do now that nobody does yet.
+     */
+    bool WorkOnce()
+    {
+        int32_t worked = 0;
+        MOC_ThreadpoolWorkOnce(mPool, &worked);
+        return worked != 0;
+    }
+
+    /** Is everything drawn that was submitted? WorkOnce in a loop until then is a Flush that never sleeps. */
+    bool IsDone() const
+    {
+        int32_t done = 1;
+        MOC_ThreadpoolIsDone(mPool, &done);
+        return done != 0;
+    }
+
+    /** How many threads the pool really has. */
+    unsigned int GetNumThreads() const
+    {
+        uint32_t threads = 0;
+        MOC_ThreadpoolGetThreads(mPool, &threads);
+        return threads;
+    }
+
+    /** How many columns and rows of bins there really are; 0 by 0 without an object that has a resolution. */
+    void GetNumBins(unsigned int &binsW, unsigned int &binsH) const
+    {
+        uint32_t w = 0, h = 0;
+        MOC_ThreadpoolGetBins(mPool, &w, &h);
+        binsW = w;
+        binsH = h;
+    }
+
+    /**
+     * Draws into this object from now on, after what was submitted is drawn. It keeps its near plane. An object that
+     * belongs to another pool is refused.
+     */
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
     /** SetResolution of the object, after what was submitted is drawn. */
     void SetResolution(unsigned int width, unsigned int height) { MOC_ThreadpoolSetResolution(mPool, width, height); }
 
-    /** The near plane, in clip-space w, of the calls that follow, and of the object. */
+    /** Flush, then SetNearClipPlane of the object. */
     void SetNearClipPlane(float nearDist) { MOC_ThreadpoolSetNearClipPlane(mPool, nearDist); }
 
-    /** The matrix of the calls that follow, which is copied; null: the vertices are in clip space. */
+    /** The matrix of this thread's calls that follow, which is copied; null: the vertices are in clip space. */
     void SetMatrix(const float *modelToClipMatrix = nullptr) { MOC_ThreadpoolSetMatrix(mPool, modelToClipMatrix); }
 
-    /** The vertex layout of the calls that follow. With a matrix the third offset names z. */
+    /** The vertex layout of this thread's calls that follow. With a matrix the third offset names z. */
     void SetVertexLayout(const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
         const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
         MOC_ThreadpoolSetVertexLayout(mPool, &plain);
     }
 
-    /** Clears the buffer, in order with the calls around it. */
+    /** Flush, then ClearBuffer of the object. */
     void ClearBuffer() { MOC_ThreadpoolClearBuffer(mPool); }
 
     /** Submits occluders; see MaskedOcclusionCulling::RenderTriangles. */
@@ -105,6 +164,16 @@ public:
                          ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL)
     {
         MOC_ThreadpoolRenderTriangles(mPool, inVtx, inTris, nTris, bfWinding, clipPlaneMask);
+    }
+
+    /** The same with a matrix and a layout of its own; the arguments are those of MaskedOcclusionCulling::RenderTriangles. */
+    void RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris, const float *modelToClipMatrix,
+                         BackfaceWinding bfWinding = MaskedOcclusionCulling::BACKFACE_CW,
+                         ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,
+                         const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
+    {
+        const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
+        MOC_ThreadpoolRenderMesh(mPool, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &plain);
     }
 
     /** Tests a rectangle against what is drawn by now; see MaskedOcclusionCulling::TestRect. */
@@ -125,6 +194,18 @@ public:
         return static_cast<CullingResult>(result);
     }
 
+    /** The same with a matrix and a layout of its own; the arguments are those of MaskedOcclusionCulling::TestTriangles. */
+    CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris, const float *modelToClipMatrix,
+                                BackfaceWinding bfWinding = MaskedOcclusionCulling::BACKFACE_CW,
+                                ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,
+                                const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
+    {
+        const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
+        int32_t result = MOC_VISIBLE;
+        MOC_ThreadpoolTestMesh(mPool, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &plain, &result);
+        return static_cast<CullingResult>(result);
+    }
+
     /** Flushes, and writes the depth of every pixel; see MaskedOcclusionCulling::ComputePixelDepthBuffer. */
     void ComputePixelDepthBuffer(float *depthData, bool flipY)
     {
@@ -133,10 +214,12 @@ public:
 
     /**
      * Folds other buffers into the pool's, in order with the calls around it, with the result of MergeBuffer one by one. They stay
-     * as they are until Flush. Not in the library that this header stands in for.
+     * as they are until Flush. Not in the library that this header replaces.
      */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
+        for (unsigned int i = 0; others != nullptr && i < count; i++)
+            MOC_Flush(others[i]);
         MOC_ThreadpoolMergeBuffers(mPool, others, count);
     }
 

@@ -21,7 +21,9 @@
  * whose names end in Checked take the length of the vertices, and refuse.
  *
  * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run at once on several threads while
- * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent.
+ * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent. While a
+ * CullingThreadpool draws into an object, any thread may query it, and what changes or copies its buffer waits for
+ * the pool first.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -266,7 +268,10 @@ public:
     static void Destroy(MaskedOcclusionCulling *moc) { MOC_Destroy(moc); }
 
     /** Gives the object a cleared buffer, 1 to 16384 pixels each way; refused sizes keep the old one. */
-    void SetResolution(unsigned int width, unsigned int height) { MOC_SetResolution(this, width, height); }
+    void SetResolution(unsigned int width, unsigned int height)
+    {
+        Direct([&] { return MOC_SetResolution(this, width, height); });
+    }
 
     /** The size of the buffer in pixels; 0 by 0 without one. */
     void GetResolution(unsigned int &width, unsigned int &height) const
@@ -305,15 +310,28 @@ public:
     }
 
     /** Sets every pixel infinitely far. */
-    void ClearBuffer() { MOC_ClearBuffer(this); }
+    void ClearBuffer()
+    {
+        Direct([&] { return MOC_ClearBuffer(this); });
+    }
 
     /** Afterwards this buffer hides what either hid, and never more. Another size or y direction is refused. */
-    void MergeBuffer(MaskedOcclusionCulling *BufferB) { MOC_MergeBuffer(this, BufferB); }
+    void MergeBuffer(MaskedOcclusionCulling *BufferB)
+    {
+        Direct([&] {
+            MOC_Flush(BufferB);
+            return MOC_MergeBuffer(this, BufferB);
+        });
+    }
 
     /** Folds several buffers into this one: the result of MergeBuffer one by one, but faster. */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
-        MOC_MergeBuffers(this, others, count);
+        Direct([&] {
+            for (unsigned int i = 0; others != nullptr && i < count; i++)
+                MOC_Flush(others[i]);
+            return MOC_MergeBuffers(this, others, count);
+        });
     }
 
     /**
@@ -333,7 +351,10 @@ public:
     {
         const MOC_VertexLayout layout = Layout(vtxLayout);
         int32_t result = MOC_VISIBLE;
-        MOC_RenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout, &result);
+        Direct([&] {
+            return MOC_RenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout,
+                                       &result);
+        });
         return static_cast<CullingResult>(result);
     }
 
@@ -393,17 +414,17 @@ public:
     {
         if (scissor == nullptr)
         {
-            MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), nullptr);
+            Direct([&] { return MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), nullptr); });
             return;
         }
         const MOC_ScissorRect rect = {scissor->mMinX, scissor->mMinY, scissor->mMaxX, scissor->mMaxY};
-        MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), &rect);
+        Direct([&] { return MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), &rect); });
     }
 
     /** The depth (1/w) of width * height pixels, row by row; negative where nothing was drawn. */
     void ComputePixelDepthBuffer(float *depthData, bool flipY) const
     {
-        MOC_ComputePixelDepthBuffer(this, depthData, flipY ? 1 : 0);
+        Direct([&] { return MOC_ComputePixelDepthBuffer(this, depthData, flipY ? 1 : 0); });
     }
 
     /** What was counted since the object was made. */
@@ -482,6 +503,13 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
+    /* A call that changes or copies the buffer: again after a flush while a pool is drawing into it. */
+    template <class Call> void Direct(Call call) const
+    {
+        while (call() == MOC_STATUS_BUSY)
+            MOC_Flush(this);
+    }
+
     static MaskedOcclusionCulling *CreateWith(unsigned int switches, Implementation implementation,
                                               pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
     {

@@ -68,14 +68,16 @@
  *
  * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
  * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
- * returns, with three exceptions: vertices and indices of MOC_ThreadpoolRenderTriangles, and the objects of
- * MOC_ThreadpoolMergeBuffers, stay as they are until MOC_ThreadpoolFlush (matrix and layout are copied); the object that
- * a pool draws into lives as long as the pool, or until it gets another; and the callbacks of MOC_Settings are called
- * until the object is destroyed.
+ * returns, with three exceptions: vertices and indices of what is submitted to a pool, and the objects of
+ * MOC_ThreadpoolMergeBuffers, stay as they are until MOC_ThreadpoolFlush or another call that flushes (matrix and layout are
+ * copied); and the callbacks of MOC_Settings are called until the object is destroyed. A pool and the object that it draws
+ * into may be destroyed in either order.
  *
  * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
  * const object may run at once on several threads while no function that takes it without const does. One of them
- * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once.
+ * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once. While a pool
+ * draws into an object, any thread may query that object; what would change or copy its buffer is refused
+ * (MOC_STATUS_BUSY) until MOC_Flush.
  *
  * Where to go from here
  *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
@@ -185,7 +187,8 @@ enum MOC_Status
      */
     MOC_STATUS_INVALID_RECORDING = 13,
     /**
-     * A recording is under way already.
+     * A pool has something in flight that is drawn into the object: call MOC_Flush first. Or the object belongs to another pool,
+     * or it records already.
      */
     MOC_STATUS_BUSY = 14,
 };
@@ -633,6 +636,65 @@ typedef struct MOC_Statistics {
 } MOC_Statistics;
 
 /**
+ * Called by a thread of a pool when it starts, with the `user` of the settings and the thread's number from 0 on: for its priority,
+ * its affinity, or a profiler. It must not throw.
+ */
+typedef void (*MOC_ThreadStart)(void *user, uint32_t number);
+
+/**
+ * How MOC_ThreadpoolCreateFrom makes a pool. Fill it with zeros, then set `size` and what should differ from the defaults.
+ */
+typedef struct MOC_ThreadpoolSettings {
+    /**
+     * sizeof(MOC_ThreadpoolSettings).
+     */
+    uint32_t size;
+    /**
+     * Threads of the pool's own, 0 to 1024. There are fewer where there are fewer processors besides the caller's, but one at least.
+     * 0: the work is done by whoever flushes, submits or calls MOC_ThreadpoolWorkOnce.
+     */
+    uint32_t threads;
+    /**
+     * The columns and rows into which the screen is cut; 0: 4. There are no more than four bins per thread, none smaller than 128x64
+     * pixels, and rows of the screen first.
+     */
+    uint32_t bins_w;
+    /**
+     * See `bins_w`.
+     */
+    uint32_t bins_h;
+    /**
+     * Calls whose arrays may still be read when a call that draws returns; 0: 32. Small calls are gathered into batches of half as many
+     * at most, so that a larger number makes them cheaper.
+     */
+    uint32_t max_jobs;
+    /**
+     * Processors that the pool and its caller have; 0: as many as the system says.
+     */
+    uint32_t processors;
+    /**
+     * Threads of the program's own that will call MOC_ThreadpoolWorkOnce. It only says how many bins are worth having.
+     */
+    uint32_t external_threads;
+    /**
+     * 0.
+     */
+    uint32_t reserved;
+    /**
+     * What the names of the threads begin with, in UTF-8; their numbers follow. Null: "culling". It is copied.
+     */
+    const char *thread_name;
+    /**
+     * Called by each thread when it starts; null: nothing is.
+     */
+    MOC_ThreadStart thread_start;
+    /**
+     * For `thread_start`.
+     */
+    void *user;
+} MOC_ThreadpoolSettings;
+
+/**
  * What a recording begins with.
  */
 typedef struct MOC_RecordingInfo {
@@ -744,7 +806,8 @@ MOC_Status MOC_Create(const struct MOC_Settings *settings,
                       MaskedOcclusionCulling **out);
 
 /**
- * Frees the object and its buffer, and ends its recording. Null is allowed.
+ * Frees the object and its buffer, and ends its recording. A pool that draws into it draws what was submitted first, and has no object
+ * afterwards. Null is allowed.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -841,6 +904,17 @@ MOC_Status MOC_GetImplementation(const MaskedOcclusionCulling *moc, int32_t *out
  * As MOC_GetNearClipPlane.
  */
 MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
+
+/**
+ * Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted: afterwards the object may
+ * be used directly while nobody calls the pool.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed.
+ */
+MOC_Status MOC_Flush(const MaskedOcclusionCulling *moc);
 
 /**
  * Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
@@ -1176,10 +1250,14 @@ MOC_Status MOC_TransformVertices(const float *matrix,
  * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
  * each mesh; MOC_ThreadpoolFlush; tests.
  *
- * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
+ * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four per
  * thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
- * came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
- * in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
+ * came: the buffer gets the same bits as from one thread. While a thread of the pool is awake, what was submitted is drawn
+ * without another call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush,
+ * MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+ *
+ * At most `max_jobs` calls still read their arrays when a call that draws returns; where there would be more, the caller works until
+ * there are not. So a program that goes round among `max_jobs` + 1 arrays needs no flush before it writes to one again.
  *
  * Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
  *
@@ -1197,12 +1275,26 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
                                 struct MOC_Threadpool **out);
 
 /**
+ * MOC_ThreadpoolCreate with more settings: for pools whose work is done by the threads of the program's own job system, for names of
+ * threads, and for a callback when a thread starts.
+ *
+ * Errors: as there, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is too small,
+ * MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+ *
+ * Required:
+ * `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
+ * `user` by any thread. `out` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolCreateFrom(const struct MOC_ThreadpoolSettings *settings,
+                                    struct MOC_Threadpool **out);
+
+/**
  * Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
  * allowed.
  *
  * Required:
  * `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
- * last MOC_ThreadpoolFlush can still be read, and the object is still there.
+ * last MOC_ThreadpoolFlush can still be read.
  */
 MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
 
@@ -1217,8 +1309,8 @@ MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
 
 /**
- * Lets each thread sleep as soon as it has finished what it is at. Calls are taken in meanwhile, and whoever flushes
- * does the work.
+ * Draws what was submitted, and lets the threads sleep. Calls are taken in meanwhile; they wait until the threads are woken, or
+ * somebody flushes or calls MOC_ThreadpoolWorkOnce.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1229,7 +1321,7 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 
 /**
  * Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
- * and, while nobody calls the pool, the object may be used directly.
+ * and, while nobody calls the pool, the object may be drawn into directly.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1239,15 +1331,63 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
 
 /**
- * Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. A near plane that was set on the pool
- * becomes the object's.
+ * Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of a program's own job system, beside
+ * the pool's threads or in their place. Writes 1 to `worked` (null is allowed), or 0 where there is nothing to do now that nobody does
+ * yet. A piece is one batch of calls to project, or what one bin has to draw: tens of microseconds as a rule.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
  * Required:
- * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
- * the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
- * calls the pool.
+ * As MOC_ThreadpoolWakeThreads. `worked` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolWorkOnce(const struct MOC_Threadpool *pool,
+                                  int32_t *worked);
+
+/**
+ * Writes 1 where everything that was submitted is drawn, else 0. MOC_ThreadpoolWorkOnce in a loop until then is a flush that never
+ * sleeps.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads. `done` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolIsDone(const struct MOC_Threadpool *pool,
+                                int32_t *done);
+
+/**
+ * Writes how many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads. `threads` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool,
+                                    uint32_t *threads);
+
+/**
+ * Writes into how many columns and rows of bins the screen is cut, which changes with the resolution.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads. `bins_w` and `bins_h` are null or can be written.
+ */
+MOC_Status MOC_ThreadpoolGetBins(const struct MOC_Threadpool *pool, uint32_t *bins_w, uint32_t *bins_h);
+
+/**
+ * Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. The object keeps its near plane.
+ *
+ * The object may be destroyed before the pool or after it. It may be queried by MOC_TestRect and MOC_TestTriangles at any time, by any
+ * thread, also while the pool draws: they answer from what is drawn by then. What would change or copy its buffer while something is in
+ * flight is refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY where `moc` belongs to another pool, and nothing is changed.
+ *
+ * Required:
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; nobody uses it or the
+ * object that the pool had meanwhile.
  */
 MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
                                    MaskedOcclusionCulling *moc);
@@ -1263,9 +1403,9 @@ MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32_t width, uint32_t height);
 
 /**
- * Sets the near plane of the calls that follow, and of the object, as MOC_SetNearClipPlane does.
+ * MOC_ThreadpoolFlush, then MOC_SetNearClipPlane of the pool's object.
  *
- * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
+ * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
  *
  * Required:
  * As MOC_ThreadpoolWakeThreads.
@@ -1273,8 +1413,9 @@ MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32
 MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, float near);
 
 /**
- * Sets the matrix of the calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
- * vertices are in clip space. Threads that submit share it.
+ * Sets the matrix of the calling thread's calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+ * vertices are in clip space. A thread that never set a matrix or a layout on this pool has those that any thread set last, so that
+ * one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool.
  *
@@ -1285,8 +1426,8 @@ MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool,
                                    const float *model_to_clip);
 
 /**
- * Sets the vertex layout of the calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix: with one
- * the last offset names z. Threads that submit share it.
+ * Sets the vertex layout of the calling thread's calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix:
+ * with one the last offset names z. As MOC_ThreadpoolSetMatrix for threads that set none.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
  *
@@ -1297,7 +1438,8 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
                                          const struct MOC_VertexLayout *layout);
 
 /**
- * Clears the object's buffer, in order with the calls around it. From now on nothing that was drawn before hides anything.
+ * MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and the arrays
+ * of all calls before may be changed or freed.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
@@ -1307,14 +1449,12 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
 
 /**
- * Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once, or
- * works where `max_jobs` batches are in flight; see MOC_RenderTriangles.
+ * MOC_ThreadpoolRenderMesh with the matrix and the vertex layout that the calling thread has set.
  *
- * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+ * Errors: as there.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
- * are until MOC_ThreadpoolFlush.
+ * As MOC_ThreadpoolRenderMesh.
  */
 MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          const float *vertices,
@@ -1322,6 +1462,82 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          int32_t n_triangles,
                                          int32_t winding,
                                          int32_t clip_planes);
+
+/**
+ * Submits occluders and returns at once, or works until no more than `max_jobs` calls read their arrays. The arguments are those of
+ * MOC_RenderTriangles; the matrix and the layout are copied. The near plane is the object's.
+ *
+ * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
+ * are until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
+ * `model_to_clip` and `layout` are null or can be read.
+ */
+MOC_Status MOC_ThreadpoolRenderMesh(const struct MOC_Threadpool *pool,
+                                    const float *vertices,
+                                    const uint32_t *triangles,
+                                    int32_t n_triangles,
+                                    const float *model_to_clip,
+                                    int32_t winding,
+                                    int32_t clip_planes,
+                                    const struct MOC_VertexLayout *layout);
+
+/**
+ * As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices` on: an index that names a vertex
+ * that does not lie whole within it is an error, and nothing is drawn.
+ *
+ * Errors: as MOC_RenderTrianglesChecked.
+ *
+ * Required:
+ * As MOC_ThreadpoolRenderMesh, where `vertices` can be read for `vertex_floats` floats whatever the indices are.
+ */
+MOC_Status MOC_ThreadpoolRenderMeshChecked(const struct MOC_Threadpool *pool,
+                                           const float *vertices,
+                                           size_t vertex_floats,
+                                           const uint32_t *triangles,
+                                           int32_t n_triangles,
+                                           const float *model_to_clip,
+                                           int32_t winding,
+                                           int32_t clip_planes,
+                                           const struct MOC_VertexLayout *layout);
+
+/**
+ * MOC_TestTriangles against what is drawn by now.
+ *
+ * Errors: as there.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolTestMesh(const struct MOC_Threadpool *pool,
+                                  const float *vertices,
+                                  const uint32_t *triangles,
+                                  int32_t n_triangles,
+                                  const float *model_to_clip,
+                                  int32_t winding,
+                                  int32_t clip_planes,
+                                  const struct MOC_VertexLayout *layout,
+                                  int32_t *result);
+
+/**
+ * MOC_TestTrianglesChecked against what is drawn by now.
+ *
+ * Errors: as there.
+ *
+ * Required:
+ * As MOC_ThreadpoolWakeThreads and MOC_TestTrianglesChecked. `result` is null or can be written.
+ */
+MOC_Status MOC_ThreadpoolTestMeshChecked(const struct MOC_Threadpool *pool,
+                                         const float *vertices,
+                                         size_t vertex_floats,
+                                         const uint32_t *triangles,
+                                         int32_t n_triangles,
+                                         const float *model_to_clip,
+                                         int32_t winding,
+                                         int32_t clip_planes,
+                                         const struct MOC_VertexLayout *layout,
+                                         int32_t *result);
 
 /**
  * MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
@@ -1340,7 +1556,7 @@ MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
                                   int32_t *result);
 
 /**
- * MOC_TestTriangles against what is drawn by now, with the matrix, vertex layout and near plane that are set.
+ * MOC_ThreadpoolTestMesh with the matrix and the vertex layout that the calling thread has set.
  *
  * Errors: as there.
  *

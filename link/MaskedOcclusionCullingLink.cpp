@@ -105,7 +105,10 @@ public:
         alignedFree(linked);
     }
 
-    void SetResolution(unsigned int width, unsigned int height) override { MOC_SetResolution(mObject, width, height); }
+    void SetResolution(unsigned int width, unsigned int height) override
+    {
+        Direct([&] { return MOC_SetResolution(mObject, width, height); });
+    }
 
     void GetResolution(unsigned int &width, unsigned int &height) const override
     {
@@ -142,10 +145,16 @@ public:
                 mRecorder->RecordClearBuffer();
         }
 #endif
-        MOC_ClearBuffer(mObject);
+        Direct([&] { return MOC_ClearBuffer(mObject); });
     }
 
-    void MergeBuffer(MaskedOcclusionCulling *BufferB) override { MOC_MergeBuffer(mObject, ObjectOf(BufferB)); }
+    void MergeBuffer(MaskedOcclusionCulling *BufferB) override
+    {
+        Direct([&] {
+            MOC_Flush(ObjectOf(BufferB));
+            return MOC_MergeBuffer(mObject, ObjectOf(BufferB));
+        });
+    }
 
     CullingResult RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                   const float *modelToClipMatrix, BackfaceWinding bfWinding, ClipPlanes clipPlaneMask,
@@ -153,8 +162,10 @@ public:
     {
         const MOC_VertexLayout layout = moc_link::Layout(vtxLayout);
         int32_t result = MOC_VISIBLE;
-        MOC_RenderTriangles(mObject, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout,
-                            &result);
+        Direct([&] {
+            return MOC_RenderTriangles(mObject, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout,
+                                       &result);
+        });
 #if MOC_RECORDER_ENABLE
         RecordRenderTriangles(inVtx, inTris, nTris, modelToClipMatrix, clipPlaneMask, bfWinding, vtxLayout,
                               static_cast<CullingResult>(result));
@@ -204,16 +215,16 @@ public:
         const MOC_TriList *list = reinterpret_cast<const MOC_TriList *>(&triList);
         if (scissor == nullptr)
         {
-            MOC_RenderTrilist(mObject, list, nullptr);
+            Direct([&] { return MOC_RenderTrilist(mObject, list, nullptr); });
             return;
         }
         const MOC_ScissorRect rect = {scissor->mMinX, scissor->mMinY, scissor->mMaxX, scissor->mMaxY};
-        MOC_RenderTrilist(mObject, list, &rect);
+        Direct([&] { return MOC_RenderTrilist(mObject, list, &rect); });
     }
 
     void ComputePixelDepthBuffer(float *depthData, bool flipY) override
     {
-        MOC_ComputePixelDepthBuffer(mObject, depthData, flipY ? 1 : 0);
+        Direct([&] { return MOC_ComputePixelDepthBuffer(mObject, depthData, flipY ? 1 : 0); });
     }
 
     OcclusionCullingStatistics GetStatistics() override
@@ -242,6 +253,13 @@ public:
     }
 
 private:
+    // A call that changes or copies the buffer: again after a flush while a pool is drawing into it.
+    template <class Call> void Direct(Call call) const
+    {
+        while (call() == MOC_STATUS_BUSY)
+            MOC_Flush(mObject);
+    }
+
     MOC_LinkedObject *mObject;
 };
 

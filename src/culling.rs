@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use crate::attachment::Attachment;
 use crate::bins::TriList;
 use crate::buffer::{Buffer, TileRect};
 use crate::pipeline::{self, Camera, Cuts, Kept, Mesh};
@@ -21,7 +22,12 @@ pub(crate) const MAX_SIZE: u32 = 16_384;
 ///
 /// Clip space is (x, y, w) with x to the right, y up and w away from the eye; depth is 1/w, 0 infinitely
 /// far, larger is nearer. An object may be sent between threads, and shared by threads that only query.
+///
+/// An object that a [`CullingThreadpool`](crate::CullingThreadpool) draws into is refused ([`Error::Busy`]) wherever a call would
+/// change or copy a buffer into which something is still being drawn. Queries are always answered, from what is drawn by then.
 pub struct MaskedOcclusionCulling {
+    /// First, so that it is dropped first: what a pool still has in flight is drawn then.
+    attachment: Attachment,
     implementation: Implementation,
     update_rule: UpdateRule,
     y_axis: YAxis,
@@ -44,6 +50,7 @@ impl MaskedOcclusionCulling {
     /// An object without a buffer, on the best instruction set that the processor has and `settings` allow.
     pub fn new(settings: Settings) -> Self {
         Self {
+            attachment: Attachment::default(),
             implementation: settings.implementation.capped(),
             update_rule: settings.update_rule,
             y_axis: settings.y_axis,
@@ -79,8 +86,9 @@ impl MaskedOcclusionCulling {
     /// Allocates a buffer of `width` by `height` pixels, each from 1 to 16,384, and clears it.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps the buffer that it had.
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`], [`Error::Busy`]: the object keeps the buffer that it had.
     pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {
+        self.attachment.check_idle()?;
         if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
             return Err(Error::InvalidSize);
         }
@@ -133,8 +141,9 @@ impl MaskedOcclusionCulling {
     /// Sets every pixel infinitely far.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`].
+    /// [`Error::NoBuffer`], [`Error::Busy`].
     pub fn clear_buffer(&mut self) -> Result<(), Error> {
+        self.attachment.check_idle()?;
         self.buffer.as_mut().ok_or(Error::NoBuffer)?.clear();
         self.recorder.clear_buffer();
         Ok(())
@@ -144,7 +153,7 @@ impl MaskedOcclusionCulling {
     /// differ in instruction set and update rule.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`], [`Error::SizeMismatch`]; nothing is changed.
+    /// [`Error::NoBuffer`], [`Error::SizeMismatch`], [`Error::Busy`]; nothing is changed.
     pub fn merge_buffer(&mut self, other: &Self) -> Result<(), Error> {
         self.merge_buffers(&[other])
     }
@@ -154,6 +163,7 @@ impl MaskedOcclusionCulling {
     /// # Errors
     /// As [`Self::merge_buffer`]: where one does not fit, none is folded.
     pub fn merge_buffers(&mut self, others: &[&Self]) -> Result<(), Error> {
+        self.attachment.check_idle()?;
         let mine = self.buffer()?;
         let theirs = self.mergeable(others)?;
         // SAFETY: `&mut self`, and the others are borrowed.
@@ -165,6 +175,7 @@ impl MaskedOcclusionCulling {
     pub(crate) fn mergeable<'o>(&self, others: &[&'o Self]) -> Result<Vec<&'o Buffer>, Error> {
         let mine = self.buffer()?;
         let fitting = |other: &&'o Self| {
+            other.attachment.check_idle()?;
             let theirs = other.buffer()?;
             if (mine.width(), mine.height(), self.y_axis) != (theirs.width(), theirs.height(), other.y_axis) {
                 return Err(Error::SizeMismatch);
@@ -181,7 +192,7 @@ impl MaskedOcclusionCulling {
     ///
     /// # Errors
     /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `triangles` is not whole triangles;
-    /// [`Error::IndexOutOfRange`]. Nothing is drawn.
+    /// [`Error::IndexOutOfRange`]; [`Error::Busy`]. Nothing is drawn.
     pub fn render_triangles(
         &mut self,
         vertices: Vertices<'_>,
@@ -201,6 +212,7 @@ impl MaskedOcclusionCulling {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
+        self.attachment.check_idle()?;
         let camera = self.camera(options)?;
         let buffer = self.buffer.as_ref().ok_or(Error::NoBuffer)?;
         let mesh = Mesh { vertices, triangles, options };
@@ -224,7 +236,7 @@ impl MaskedOcclusionCulling {
     /// holds the eye, for visible.
     ///
     /// # Errors
-    /// As [`Self::render_triangles`].
+    /// [`Error::NoBuffer`], [`Error::InvalidSize`], [`Error::IndexOutOfRange`], as [`Self::render_triangles`].
     pub fn test_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -246,10 +258,27 @@ impl MaskedOcclusionCulling {
     ) -> Result<CullingResult, Error> {
         let mesh = Mesh { vertices, triangles, options };
         // SAFETY: the caller's contract.
+        let Some(result) = self.attachment.undisturbed(|| unsafe { self.ask_triangles(&mesh) }) else {
+            // SAFETY: the caller's contract.
+            return unsafe { self.pool_triangles(&mesh) };
+        };
+        // SAFETY: the caller's contract.
+        unsafe { self.recorder.test_triangles(Some(result?), &mesh) };
+        result
+    }
+
+    /// The same by way of the pool that draws into the object.
+    ///
+    /// # Safety
+    /// As there.
+    #[cold]
+    unsafe fn pool_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        // SAFETY: the caller's contract.
         unsafe {
-            let result = self.ask_triangles(&mesh)?;
-            self.recorder.test_triangles(Some(result), &mesh);
-            Ok(result)
+            match self.attachment.pool() {
+                Some(pool) => pool.test_mesh(mesh),
+                None => self.ask_triangles(mesh),
+            }
         }
     }
 
@@ -285,16 +314,31 @@ impl MaskedOcclusionCulling {
         if self.recorder.is_on() {
             return self.recorded_rect((x_min, y_min), (x_max, y_max), w_min);
         }
-        self.ask_rect([x_min, y_min, x_max, y_max], w_min)
+        match self.attachment.undisturbed(|| self.ask_rect([x_min, y_min, x_max, y_max], w_min)) {
+            Some(result) => result,
+            None => self.pool_rect((x_min, y_min), (x_max, y_max), w_min),
+        }
     }
 
     /// In pairs, which need no memory; see [`rectangle::test`].
     #[cold]
     fn recorded_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
         let edges = [min.0, min.1, max.0, max.1];
-        let result = self.ask_rect(edges, w_min)?;
-        self.recorder.test_rect(Some(result), edges, w_min);
-        Ok(result)
+        let Some(result) = self.attachment.undisturbed(|| self.ask_rect(edges, w_min)) else {
+            return self.pool_rect(min, max, w_min);
+        };
+        self.recorder.test_rect(Some(result?), edges, w_min);
+        result
+    }
+
+    /// By way of the pool that draws into the object.
+    #[cold]
+    fn pool_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
+        let edges = [min.0, min.1, max.0, max.1];
+        match self.attachment.pool() {
+            Some(pool) => pool.test_rect(edges, w_min),
+            None => self.ask_rect(edges, w_min),
+        }
     }
 
     /// The same, not recorded.
@@ -360,8 +404,8 @@ impl MaskedOcclusionCulling {
     /// Draws a list inside `scissor`, or everywhere.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or ends at
-    /// the buffer's edge), or reaches beyond the buffer's last tile.
+    /// [`Error::NoBuffer`], [`Error::Busy`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or
+    /// ends at the buffer's edge), or reaches beyond the buffer's last tile.
     pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
         // SAFETY: `&mut self` keeps every other user of the buffer away.
         unsafe { self.render_trilist_shared(list, scissor) }
@@ -376,6 +420,7 @@ impl MaskedOcclusionCulling {
     /// While it runs, no other thread draws into an overlapping rectangle, and none queries, merges,
     /// clears or reads the buffer.
     pub unsafe fn render_trilist_shared(&self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
+        self.attachment.check_idle()?;
         let buffer = self.buffer()?;
         let scissor = buffer.scissor_tiles(scissor)?;
         // SAFETY: the caller's contract for the buffer.
@@ -427,8 +472,14 @@ impl MaskedOcclusionCulling {
     /// was drawn. `flip_y` writes the last row first.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `depth` is shorter than the buffer.
+    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `depth` is shorter than the buffer; [`Error::Busy`].
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
+        self.attachment.check_idle()?;
+        self.write_pixels(depth, flip_y)
+    }
+
+    /// The same where nobody draws.
+    pub(crate) fn write_pixels(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
         let buffer = self.buffer()?;
         let pixels = buffer.width() as usize * buffer.height() as usize;
         let depth = depth.get_mut(..pixels).ok_or(Error::InvalidSize)?;
@@ -439,6 +490,18 @@ impl MaskedOcclusionCulling {
     /// All that was counted since the object was made; without [`Settings::statistics`] only the dropped triangles.
     pub fn statistics(&self) -> Statistics {
         self.counters.snapshot()
+    }
+
+    /// Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted to it. Until
+    /// another call of the pool the object may then be used directly.
+    pub fn flush(&self) {
+        if let Some(pool) = self.attachment.pool() {
+            pool.flush();
+        }
+    }
+
+    pub(crate) fn attachment(&self) -> &Attachment {
+        &self.attachment
     }
 
     pub(crate) fn recorder(&self) -> &Recorder {

@@ -18,6 +18,7 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod allocator;
+mod attachment;
 mod bins;
 mod buffer;
 pub mod capi;
@@ -41,7 +42,7 @@ pub use allocator::Allocator;
 pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;
 pub use error::Error;
-pub use pool::{CullingThreadpool, Scope};
+pub use pool::{CullingThreadpool, Scope, ThreadStart, ThreadpoolSettings};
 pub use recorder::{RecordedCall, RecordedMesh, RecordedRect, Recording, RecordingError};
 pub use settings::{DrawOptions, Settings};
 pub use transform::transform_vertices;

@@ -36,6 +36,8 @@ const THEIR_PROGRAMS: Program = Program { name: "their_programs", sources: &["th
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
 const THREAD_POOL: Program = Program { name: "thread_pool", sources: &["thread_pool.cpp"], cpp: true };
 const RECORDER: Program = Program { name: "recorder", sources: &["recorder.cpp"], cpp: true };
+const POOL_CONTRACT: Program = Program { name: "pool_contract", sources: &["pool_contract.cpp"], cpp: true };
+const POOL_THREADS: Program = Program { name: "pool_threads", sources: &["pool_threads.cpp"], cpp: true };
 const THREAD_POOL_C: Program = Program { name: "thread_pool_c", sources: &["thread_pool_c.c"], cpp: false };
 
 /// The compiler that the `cc` crate finds for the target that the library was built for.
@@ -125,6 +127,10 @@ programs! {
     hostile_static: HOSTILE, Library::Static;
     peer_style_shared: PEER_STYLE, Library::Shared;
     peer_style_static: PEER_STYLE, Library::Static;
+    pool_contract_shared: POOL_CONTRACT, Library::Shared;
+    pool_contract_static: POOL_CONTRACT, Library::Static;
+    pool_threads_shared: POOL_THREADS, Library::Shared;
+    pool_threads_static: POOL_THREADS, Library::Static;
     recorder_shared: RECORDER, Library::Shared;
     recorder_static: RECORDER, Library::Static;
     statistics_shared: STATISTICS, Library::Shared;
@@ -159,6 +165,16 @@ fn peer_style_under_sanitizers() {
 #[test]
 fn recorder_under_sanitizers() {
     under_sanitizers(&RECORDER);
+}
+
+#[test]
+fn pool_contract_under_sanitizers() {
+    under_sanitizers(&POOL_CONTRACT);
+}
+
+#[test]
+fn pool_threads_under_sanitizers() {
+    under_sanitizers(&POOL_THREADS);
 }
 
 #[test]

@@ -27,6 +27,11 @@ mod processor {
 mod sync {
     pub(super) use loom::sync::{Arc, Condvar, Mutex, MutexGuard};
 
+    /// One caller is not told from another.
+    pub(super) fn external_thread() -> usize {
+        usize::MAX
+    }
+
     /// Nobody waits a moment: all go to sleep, or look again when they find that something was finished.
     #[derive(Default)]
     pub(super) struct Glance(loom::sync::atomic::AtomicU64);
@@ -77,12 +82,40 @@ mod target {
         pub drawn: Vec<Mutex<Vec<u32>>>,
         pub clears: AtomicU64,
         busy: Vec<AtomicBool>,
+        /// Odd while something is in flight.
+        turns: AtomicU64,
+        /// Pieces that bins drew, for who waits without a call of the crew.
+        pieces: loom::sync::Mutex<usize>,
+        progress: loom::sync::Condvar,
     }
 
     impl Target {
         pub fn new(bins: usize) -> Self {
             let drawn = (0..bins).map(|_| Mutex::default()).collect();
-            Self { drawn, clears: AtomicU64::new(0), busy: (0..bins).map(|_| AtomicBool::new(false)).collect() }
+            Self {
+                drawn,
+                clears: AtomicU64::new(0),
+                busy: (0..bins).map(|_| AtomicBool::new(false)).collect(),
+                turns: AtomicU64::new(0),
+                pieces: loom::sync::Mutex::new(0),
+                progress: loom::sync::Condvar::new(),
+            }
+        }
+
+        pub fn turn(&self) {
+            self.turns.fetch_add(1, SeqCst);
+        }
+
+        pub fn is_busy(&self) -> bool {
+            self.turns.load(SeqCst) % 2 == 1
+        }
+
+        /// Waits until so many pieces are drawn; where no thread draws them, loom finds that all are blocked.
+        pub fn wait(&self, pieces: usize) {
+            let mut drawn = self.pieces.lock().unwrap();
+            while *drawn < pieces {
+                drawn = self.progress.wait(drawn).unwrap();
+            }
         }
 
         pub fn bins(&self) -> usize {
@@ -101,6 +134,7 @@ mod target {
         }
 
         pub fn draw(&self, bin: usize, work: &[Arc<Work>]) {
+            assert!(self.is_busy(), "the object is told before anything is drawn");
             assert!(!self.busy[bin].swap(true, SeqCst), "two threads in a bin");
             loom::thread::yield_now();
             let mut drawn = match self.drawn[bin].try_lock() {
@@ -115,6 +149,8 @@ mod target {
             }
             drop(drawn);
             assert!(self.busy[bin].swap(false, SeqCst));
+            *self.pieces.lock().unwrap() += work.len();
+            self.progress.notify_all();
         }
     }
 }
@@ -130,8 +166,18 @@ fn call(number: u32) -> Call {
     Call { number, indices: 3 * schedule::BATCH_WEIGHT, clears: 0 }
 }
 
+/// So small that nobody is woken for its sake where another thread is awake.
+fn small(number: u32) -> Call {
+    Call { number, indices: 3, clears: 0 }
+}
+
 fn clear(crew: &Crew, target: &Target) {
-    crew.submit_ready(|| Work::Clear(target.clears.fetch_add(1, SeqCst) + 1));
+    crew.do_now(|| Work::Clear(target.clears.fetch_add(1, SeqCst) + 1));
+    assert_eq!(
+        target.drawn[0].lock().unwrap().last(),
+        Some(&(1000 + target.clears() as u32)),
+        "cleared when it returns"
+    );
 }
 
 /// Plays what a program does in every order, with this many threads, bins and batches.
@@ -152,6 +198,8 @@ fn explore(threads: usize, bins: usize, max_batches: usize, program: fn(&Crew, &
             })
             .collect();
         program(&crew, &target);
+        crew.flush();
+        assert!(!target.is_busy());
         for drawn in &target.drawn {
             assert_eq!(*drawn.lock().unwrap(), expected);
         }
@@ -164,9 +212,9 @@ fn explore(threads: usize, bins: usize, max_batches: usize, program: fn(&Crew, &
 fn calls_and_clears_are_drawn_in_order() {
     let program = |crew: &Crew, target: &Target| {
         crew.set_suspended(false);
-        crew.submit(call(1));
+        crew.submit(call(1), true);
         clear(crew, target);
-        crew.submit(call(2));
+        crew.submit(call(2), true);
         crew.flush();
     };
     explore(1, 1, 2, program, &[1, 1001, 2]);
@@ -177,10 +225,10 @@ fn calls_and_clears_are_drawn_in_order() {
 #[test]
 fn threads_may_sleep_and_wake_at_any_time() {
     let program = |crew: &Crew, _: &Target| {
-        crew.submit(call(1));
+        crew.submit(call(1), true);
         crew.set_suspended(false);
         crew.set_suspended(true);
-        crew.submit(call(2));
+        crew.submit(call(2), true);
         crew.flush();
         crew.set_suspended(false);
         crew.set_suspended(false);
@@ -194,13 +242,53 @@ fn threads_may_sleep_and_wake_at_any_time() {
 fn two_may_submit_and_flush() {
     let program = |crew: &Crew, target: &Target| {
         crew.set_suspended(false);
-        crew.submit(call(1));
+        crew.submit(call(1), true);
         crew.flush();
         // What was submitted before is drawn now, whatever others submit meanwhile.
         assert_eq!(*target.drawn[0].lock().unwrap(), [1]);
-        crew.submit(call(2));
+        crew.submit(call(2), true);
         clear(crew, target);
         crew.flush();
     };
     explore(1, 1, 1, program, &[1, 2, 1001]);
+}
+
+#[test]
+fn what_is_submitted_to_awake_threads_needs_no_other_call() {
+    let program = |crew: &Crew, target: &Target| {
+        crew.set_suspended(false);
+        crew.submit(small(1), true);
+        target.wait(target.bins());
+        crew.submit(small(2), true);
+        target.wait(2 * target.bins());
+    };
+    explore(1, 1, 2, program, &[1, 2]);
+    explore(2, 1, 2, program, &[1, 2]);
+    explore(1, 2, 2, program, &[1, 2]);
+    // Submitted before they wake, and to one that has no room.
+    let program = |crew: &Crew, target: &Target| {
+        crew.submit(small(1), true);
+        crew.set_suspended(false);
+        crew.submit(small(2), true);
+        crew.submit_ready(|| Work::Triangles(pipeline::Kept(vec![3])));
+        target.wait(3 * target.bins());
+    };
+    explore(1, 1, 1, program, &[1, 2, 3]);
+    explore(2, 1, 2, program, &[1, 2, 3]);
+}
+
+#[test]
+fn a_thread_of_the_program_may_do_the_work() {
+    let program = |crew: &Crew, target: &Target| {
+        crew.submit(call(1), true);
+        crew.set_suspended(false);
+        crew.submit(small(2), true);
+        while crew.work_once() {}
+        // Others may be at what is left.
+        target.wait(2 * target.bins());
+        crew.flush();
+        assert!(crew.is_done() && !crew.work_once());
+    };
+    explore(0, 2, 2, program, &[1, 2]);
+    explore(1, 1, 2, program, &[1, 2]);
 }

@@ -2,7 +2,7 @@
 
 use std::alloc::Layout;
 
-use super::pointers::{check_out, object, object_mut, read, write};
+use super::pointers::{check_out, object, object_mut, read, write, write_size};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_Implementation, MOC_Settings, MOC_UpdateRule, MOC_YAxis};
 use crate::{Allocator, Error, MaskedOcclusionCulling, Settings};
@@ -86,7 +86,8 @@ pub unsafe extern "C" fn MOC_Create(
     })
 }
 
-/// Frees the object and its buffer, and ends its recording. Null is allowed.
+/// Frees the object and its buffer, and ends its recording. A pool that draws into it draws what was submitted first, and has no object
+/// afterwards. Null is allowed.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -97,6 +98,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
         // SAFETY: the caller's contract: a live object that nobody else uses. `MOC_Create` took its memory
         // from the same allocator with the same layout.
         unsafe {
+            place.as_ref().attachment().leave();
             let allocator = place.as_ref().allocator();
             place.drop_in_place();
             allocator.free(place.cast(), object_layout()?);
@@ -169,20 +171,6 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
     })
 }
 
-/// # Safety
-/// The pointers are null or can be written.
-unsafe fn write_size(width: *mut u32, height: *mut u32, size: Result<(u32, u32), Error>) -> Result<(), Error> {
-    check_out(width)?;
-    check_out(height)?;
-    let (w, h) = size.unwrap_or((0, 0));
-    // SAFETY: not null, and the caller's contract.
-    unsafe {
-        write(width, w);
-        write(height, h);
-    }
-    size.map(|_| ())
-}
-
 /// Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
 /// cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
 /// visible. So the camera's own near plane culls more.
@@ -248,4 +236,20 @@ unsafe fn get<T: Copy>(
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, property(moc)) };
     Ok(())
+}
+
+/// Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted: afterwards the object may
+/// be used directly while nobody calls the pool.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// `moc` is null or from MOC_Create and not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_Flush(moc: *const MaskedOcclusionCulling) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { object(moc) }?.flush();
+        Ok(())
+    })
 }

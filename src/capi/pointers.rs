@@ -93,3 +93,23 @@ pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
 pub(super) fn check_out<T>(out: *mut T) -> Result<(), Error> {
     if out.is_null() { Err(Error::NullPointer) } else { Ok(()) }
 }
+
+/// Writes a width and a height, or 0 by 0 with the error that stands for them.
+///
+/// # Safety
+/// The pointers are null or can be written.
+pub(super) unsafe fn write_size(
+    width: *mut u32,
+    height: *mut u32,
+    size: Result<(u32, u32), Error>,
+) -> Result<(), Error> {
+    check_out(width)?;
+    check_out(height)?;
+    let (w, h) = size.unwrap_or((0, 0));
+    // SAFETY: not null, and the caller's contract.
+    unsafe {
+        write(width, w);
+        write(height, h);
+    }
+    size.map(|_| ())
+}

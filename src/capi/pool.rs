@@ -1,65 +1,110 @@
-//! The pool of threads.
+//! The pool of threads: making it, its threads and its object. What it draws and answers is in `pool_calls.rs`.
 
+use core::ffi::{c_char, c_void};
 use core::ptr::NonNull;
-use std::sync::{Mutex, PoisonError};
 
-use super::mesh::{CheckedMesh, MeshArguments};
-use super::pointers::{check_out, objects, read, slice_mut, write};
-use super::status::{MOC_Status, guard, guard_result};
-use super::types::{self, MOC_VertexLayout};
-use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, VertexLayout};
+use super::pointers::{check_out, read, write, write_size};
+use super::pool_state::PoolState;
+use super::status::{MOC_Status, guard};
+use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, ThreadStart, ThreadpoolSettings};
 
 /// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
 pub struct MOC_Threadpool {
-    pool: CullingThreadpool,
-    /// What the next calls are drawn with.
-    state: Mutex<State>,
-}
-
-#[derive(Clone, Copy)]
-struct State {
-    matrix: Option<[f32; 16]>,
-    layout: MOC_VertexLayout,
+    pub(super) pool: CullingThreadpool,
+    /// What the next calls without a matrix of their own are drawn with.
+    pub(super) state: PoolState,
 }
 
 impl MOC_Threadpool {
-    /// A mesh with what is set, checked.
-    ///
-    /// # Safety
-    /// As [`MeshArguments::check`].
-    unsafe fn mesh<'a>(
-        &self,
-        vertices: *const f32,
-        triangles: *const u32,
-        n_triangles: i32,
-        winding: i32,
-        clip_planes: i32,
-    ) -> Result<CheckedMesh<'a>, Error> {
-        let State { matrix, layout } = *self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let arguments = MeshArguments {
-            vertices,
-            vertex_floats: None,
-            triangles,
-            n_triangles,
-            model_to_clip: matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
-            winding,
-            clip_planes,
-            layout: &raw const layout,
-        };
-        // SAFETY: the caller's contract, and two locals.
-        self.pool.with_object(|moc| unsafe { arguments.check(moc) })
-    }
-
-    fn change(&self, change: impl FnOnce(&mut State)) {
-        change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
+    fn new(settings: ThreadpoolSettings) -> Result<*mut Self, Error> {
+        let pool = CullingThreadpool::with_settings(settings)?;
+        Ok(Box::into_raw(Box::new(Self { pool, state: PoolState::default() })))
     }
 }
 
 /// # Safety
 /// Null or from `MOC_ThreadpoolCreate` and not destroyed.
-unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Error> {
+pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Error> {
     // SAFETY: the caller's contract.
     unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
+}
+
+/// Called by a thread of a pool when it starts, with the `user` of the settings and the thread's number from 0 on: for its priority,
+/// its affinity, or a profiler. It must not throw.
+pub type MOC_ThreadStart = Option<unsafe extern "C" fn(user: *mut c_void, number: u32)>;
+
+/// How MOC_ThreadpoolCreateFrom makes a pool. Fill it with zeros, then set `size` and what should differ from the defaults.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MOC_ThreadpoolSettings {
+    /// sizeof(MOC_ThreadpoolSettings).
+    pub size: u32,
+    /// Threads of the pool's own, 0 to 1024. There are fewer where there are fewer processors besides the caller's, but one at least.
+    /// 0: the work is done by whoever flushes, submits or calls MOC_ThreadpoolWorkOnce.
+    pub threads: u32,
+    /// The columns and rows into which the screen is cut; 0: 4. There are no more than four bins per thread, none smaller than 128x64
+    /// pixels, and rows of the screen first.
+    pub bins_w: u32,
+    /// See `bins_w`.
+    pub bins_h: u32,
+    /// Calls whose arrays may still be read when a call that draws returns; 0: 32. Small calls are gathered into batches of half as many
+    /// at most, so that a larger number makes them cheaper.
+    pub max_jobs: u32,
+    /// Processors that the pool and its caller have; 0: as many as the system says.
+    pub processors: u32,
+    /// Threads of the program's own that will call MOC_ThreadpoolWorkOnce. It only says how many bins are worth having.
+    pub external_threads: u32,
+    /// 0.
+    pub reserved: u32,
+    /// What the names of the threads begin with, in UTF-8; their numbers follow. Null: "culling". It is copied.
+    pub thread_name: *const c_char,
+    /// Called by each thread when it starts; null: nothing is.
+    pub thread_start: MOC_ThreadStart,
+    /// For `thread_start`.
+    pub user: *mut c_void,
+}
+
+/// A program's pointer, for its callback on other threads.
+struct User(*mut c_void);
+
+// SAFETY: it is only handed to the callback; the caller of MOC_ThreadpoolCreateFrom vouches that threads may have it.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+impl MOC_ThreadpoolSettings {
+    /// # Safety
+    /// `thread_name` is null or a C string; `thread_start` may be called by any thread.
+    unsafe fn to_rust(self) -> Result<ThreadpoolSettings, Error> {
+        if (self.size as usize) < size_of::<Self>() {
+            return Err(Error::InvalidSize);
+        }
+        if self.reserved != 0 {
+            return Err(Error::InvalidEnum);
+        }
+        let mut settings = ThreadpoolSettings::default();
+        let or = |value: u32, default: u32| if value == 0 { default } else { value };
+        settings.threads = self.threads;
+        settings.bins_w = or(self.bins_w, settings.bins_w);
+        settings.bins_h = or(self.bins_h, settings.bins_h);
+        settings.max_jobs = or(self.max_jobs, settings.max_jobs);
+        settings.processors = self.processors;
+        settings.external_threads = self.external_threads;
+        if !self.thread_name.is_null() {
+            // SAFETY: not null, and the caller's contract.
+            let name = unsafe { core::ffi::CStr::from_ptr(self.thread_name) };
+            settings.thread_name = name.to_string_lossy().into_owned();
+        }
+        let user = User(self.user);
+        settings.on_thread_start = self.thread_start.map(|start| -> ThreadStart {
+            Box::new(move |number| {
+                let User(user) = &user;
+                // SAFETY: the caller's contract.
+                unsafe { start(*user, number) }
+            })
+        });
+        Ok(settings)
+    }
 }
 
 /// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
@@ -70,10 +115,14 @@ unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, 
 /// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
 /// each mesh; MOC_ThreadpoolFlush; tests.
 ///
-/// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four a
+/// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four per
 /// thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
-/// came: the buffer gets the same bits as from one thread. At most `max_jobs` batches of calls are
-/// in flight; a caller who finds no room works until there is. Without threads (0), whoever flushes does the work.
+/// came: the buffer gets the same bits as from one thread. While a thread of the pool is awake, what was submitted is drawn
+/// without another call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush,
+/// MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+///
+/// At most `max_jobs` calls still read their arrays when a call that draws returns; where there would be more, the caller works until
+/// there are not. So a program that goes round among `max_jobs` + 1 arrays needs no flush before it writes to one again.
 ///
 /// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
 ///
@@ -91,17 +140,48 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     processors: u32,
     out: *mut *mut MOC_Threadpool,
 ) -> MOC_Status {
+    let settings = || Ok(ThreadpoolSettings { threads, bins_w, bins_h, max_jobs, processors, ..Default::default() });
+    // SAFETY: the caller's contract.
+    unsafe { create(settings, out) }
+}
+
+/// MOC_ThreadpoolCreate with more settings: for pools whose work is done by the threads of the program's own job system, for names of
+/// threads, and for a callback when a thread starts.
+///
+/// Errors: as there, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is too small,
+/// MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+///
+/// # Safety
+/// `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
+/// `user` by any thread. `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
+    settings: *const MOC_ThreadpoolSettings,
+    out: *mut *mut MOC_Threadpool,
+) -> MOC_Status {
+    let settings = || {
+        // SAFETY: the caller's contract.
+        let settings = unsafe { read(settings) }.ok_or(Error::NullPointer)?;
+        // SAFETY: the caller's contract.
+        unsafe { settings.to_rust() }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { create(settings, out) }
+}
+
+/// # Safety
+/// `out` is null or can be written.
+unsafe fn create(
+    settings: impl FnOnce() -> Result<ThreadpoolSettings, Error>,
+    out: *mut *mut MOC_Threadpool,
+) -> MOC_Status {
     guard(|| {
         check_out(out)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, core::ptr::null_mut()) };
-        let pool = match processors {
-            0 => CullingThreadpool::new(threads, bins_w, bins_h, max_jobs)?,
-            _ => CullingThreadpool::with_processors(threads, bins_w, bins_h, max_jobs, processors)?,
-        };
-        let state = Mutex::new(State { matrix: None, layout: VertexLayout::CLIP_SPACE.into() });
+        let pool = MOC_Threadpool::new(settings()?)?;
         // SAFETY: as above.
-        unsafe { write(out, Box::into_raw(Box::new(MOC_Threadpool { pool, state }))) };
+        unsafe { write(out, pool) };
         Ok(())
     })
 }
@@ -111,7 +191,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 ///
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
-/// last MOC_ThreadpoolFlush can still be read, and the object is still there.
+/// last MOC_ThreadpoolFlush can still be read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC_Status {
     guard(|| {
@@ -138,8 +218,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
     })
 }
 
-/// Lets each thread sleep as soon as it has finished what it is at. Calls are taken in meanwhile, and whoever flushes
-/// does the work.
+/// Draws what was submitted, and lets the threads sleep. Calls are taken in meanwhile; they wait until the threads are woken, or
+/// somebody flushes or calls MOC_ThreadpoolWorkOnce.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -155,7 +235,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
 }
 
 /// Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
-/// and, while nobody calls the pool, the object may be used directly.
+/// and, while nobody calls the pool, the object may be drawn into directly.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -170,25 +250,96 @@ pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC
     })
 }
 
-/// Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. A near plane that was set on the pool
-/// becomes the object's.
+/// Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of a program's own job system, beside
+/// the pool's threads or in their place. Writes 1 to `worked` (null is allowed), or 0 where there is nothing to do now that nobody does
+/// yet. A piece is one batch of calls to project, or what one bin has to draw: tens of microseconds as a rule.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
-/// the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
-/// calls the pool.
+/// As MOC_ThreadpoolWakeThreads. `worked` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolWorkOnce(pool: *const MOC_Threadpool, worked: *mut i32) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let did = unsafe { handle(pool) }?.pool.work_once();
+        if !worked.is_null() {
+            // SAFETY: not null, and the caller's contract.
+            unsafe { write(worked, i32::from(did)) };
+        }
+        Ok(())
+    })
+}
+
+/// Writes 1 where everything that was submitted is drawn, else 0. MOC_ThreadpoolWorkOnce in a loop until then is a flush that never
+/// sleeps.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `done` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolIsDone(pool: *const MOC_Threadpool, done: *mut i32) -> MOC_Status {
+    guard(|| {
+        check_out(done)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(done, i32::from(handle(pool)?.pool.is_done())) };
+        Ok(())
+    })
+}
+
+/// Writes how many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `threads` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolGetThreads(pool: *const MOC_Threadpool, threads: *mut u32) -> MOC_Status {
+    guard(|| {
+        check_out(threads)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(threads, handle(pool)?.pool.thread_count()) };
+        Ok(())
+    })
+}
+
+/// Writes into how many columns and rows of bins the screen is cut, which changes with the resolution.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `bins_w` and `bins_h` are null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
+    pool: *const MOC_Threadpool,
+    bins_w: *mut u32,
+    bins_h: *mut u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        unsafe { write_size(bins_w, bins_h, handle(pool)?.pool.bin_count()) }
+    })
+}
+
+/// Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. The object keeps its near plane.
+///
+/// The object may be destroyed before the pool or after it. It may be queried by MOC_TestRect and MOC_TestTriangles at any time, by any
+/// thread, also while the pool draws: they answer from what is drawn by then. What would change or copy its buffer while something is in
+/// flight is refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+///
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY where `moc` belongs to another pool, and nothing is changed.
+///
+/// # Safety
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; nobody uses it or the
+/// object that the pool had meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,
     moc: *mut MaskedOcclusionCulling,
 ) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) };
-        Ok(())
-    })
+    // SAFETY: the caller's contract; an object that is destroyed leaves its pool first.
+    guard(|| unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) })
 }
 
 /// MOC_SetResolution of the pool's object, after what was submitted is drawn.
@@ -207,9 +358,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     guard(|| unsafe { handle(pool) }?.pool.set_resolution(width, height))
 }
 
-/// Sets the near plane of the calls that follow, and of the object, as MOC_SetNearClipPlane does.
+/// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane of the pool's object.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity.
+/// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
@@ -217,186 +368,4 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
-}
-
-/// Sets the matrix of the calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
-/// vertices are in clip space. Threads that submit share it.
-///
-/// Errors: MOC_STATUS_NULL_POINTER for the pool.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, model_to_clip: *const f32) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        let (pool, matrix) = unsafe { (handle(pool)?, read(model_to_clip.cast::<[f32; 16]>())) };
-        pool.change(|state| state.matrix = matrix);
-        Ok(())
-    })
-}
-
-/// Sets the vertex layout of the calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix: with one
-/// the last offset names z. Threads that submit share it.
-///
-/// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
-    pool: *const MOC_Threadpool,
-    layout: *const MOC_VertexLayout,
-) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
-        let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
-        if layout.stride < 0 {
-            return Err(Error::InvalidLayout);
-        }
-        pool.change(|state| state.layout = layout);
-        Ok(())
-    })
-}
-
-/// Clears the object's buffer, in order with the calls around it. From now on nothing that was drawn before hides anything.
-///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
-}
-
-/// Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once, or
-/// works where `max_jobs` batches are in flight; see MOC_RenderTriangles.
-///
-/// Errors: as there. Triangles that are dropped later are counted in the object's statistics.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
-/// are until MOC_ThreadpoolFlush.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
-    pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    triangles: *const u32,
-    n_triangles: i32,
-    winding: i32,
-    clip_planes: i32,
-) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        let handle = unsafe { handle(pool) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
-        // SAFETY: the caller's contract.
-        unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
-    })
-}
-
-/// MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
-///
-/// Errors: as there.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
-    pool: *const MOC_Threadpool,
-    xmin: f32,
-    ymin: f32,
-    xmax: f32,
-    ymax: f32,
-    wmin: f32,
-    result: *mut i32,
-) -> MOC_Status {
-    let query = || {
-        check_out(result)?;
-        // SAFETY: the caller's contract.
-        unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin)
-    };
-    // SAFETY: the caller's contract.
-    unsafe { guard_result(result, query) }
-}
-
-/// MOC_TestTriangles against what is drawn by now, with the matrix, vertex layout and near plane that are set.
-///
-/// Errors: as there.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
-    pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    triangles: *const u32,
-    n_triangles: i32,
-    winding: i32,
-    clip_planes: i32,
-    result: *mut i32,
-) -> MOC_Status {
-    let query = || {
-        // SAFETY: the caller's contract.
-        let handle = unsafe { handle(pool) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
-        // SAFETY: the caller's contract.
-        unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
-    };
-    // SAFETY: the caller's contract.
-    unsafe { guard_result(result, query) }
-}
-
-/// MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
-///
-/// Errors: as there.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
-    pool: *const MOC_Threadpool,
-    out: *mut f32,
-    flip_y: i32,
-) -> MOC_Status {
-    guard(|| {
-        check_out(out)?;
-        // SAFETY: the caller's contract.
-        let pool = &unsafe { handle(pool) }?.pool;
-        let flip = types::flag(flip_y)?;
-        pool.with_pixels(
-            |pixels| {
-                // SAFETY: the caller's contract.
-                unsafe { slice_mut(out, pixels) }
-            },
-            flip,
-        )
-    })
-}
-
-/// Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
-/// MOC_MergeBuffers: each thread takes pieces of the screen.
-///
-/// Errors: as there; nothing is folded.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
-/// until MOC_ThreadpoolFlush.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
-    pool: *const MOC_Threadpool,
-    others: *const *const MaskedOcclusionCulling,
-    count: u32,
-) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
-        // SAFETY: the caller's contract.
-        unsafe { pool.pool.merge_buffers(&others) }
-    })
 }

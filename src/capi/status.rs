@@ -48,7 +48,8 @@ pub enum MOC_Status {
     MOC_STATUS_FILE = 12,
     /// A file is no recording, or it is cut or broken.
     MOC_STATUS_INVALID_RECORDING = 13,
-    /// A recording is under way already.
+    /// A pool has something in flight that is drawn into the object: call MOC_Flush first. Or the object belongs to another pool,
+    /// or it records already.
     MOC_STATUS_BUSY = 14,
 }
 
@@ -89,7 +90,7 @@ const TEXTS: [&CStr; 15] = [
     c"the library failed inside",
     c"a recording's file cannot be made, written or read",
     c"a file is no recording, or it is cut or broken",
-    c"a recording is under way already",
+    c"a pool is drawing into the object, or it belongs to another pool, or it records already",
 ];
 
 /// The MOC_ABI_VERSION that the library was built with.

@@ -1,16 +1,34 @@
 //! The threads of a pool: take work, do it, sleep when there is none.
+//!
+//! While a thread of the pool is awake, nothing that was submitted waits for another call: whoever leaves work behind sees to it
+//! that one of them looks again ([`Crew::leave_to_threads`]).
+//!
+//! Callers lend what they submit until a flush comes back. A panic in here, which would be a bug, could make it come back early or
+//! never, so it ends the process (as in rayon); a panic in drawing is caught, and occluders are missing.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
 
 use super::processor::Processor;
 use super::schedule::{Schedule, Task};
-use super::sync::{Arc, Condvar, Glance, Mutex, MutexGuard};
+use super::sync::{Arc, Condvar, Glance, Mutex, MutexGuard, external_thread};
 use super::target::{Call, Target, Work};
 use crate::pipeline::Kept;
 
-/// The number of those who are not the pool's.
-const HELPER: usize = usize::MAX;
+/// Ends the process where a panic would leave what `action` does half done.
+fn abort_on_panic<R>(action: impl FnOnce() -> R) -> R {
+    struct Abort;
+    impl Drop for Abort {
+        fn drop(&mut self) {
+            eprintln!("masked-occlusion-culling: the scheduler of a thread pool panicked, which is a bug; aborting");
+            std::process::abort();
+        }
+    }
+    let abort = Abort;
+    let result = action();
+    core::mem::forget(abort);
+    result
+}
 
 /// What threads share.
 pub(super) struct Crew {
@@ -28,7 +46,8 @@ struct State {
     target: Option<Arc<Target>>,
     /// Memory to be used again.
     spare: Vec<Kept>,
-    /// Threads that wait for work, and how many of them were woken and are not awake yet.
+    /// Threads of the pool; how many of them wait for work, and how many of those were woken and are not awake yet.
+    threads: usize,
     idle: usize,
     woken: usize,
     /// Where the last to wake one ran.
@@ -39,6 +58,15 @@ struct State {
     stopped: bool,
 }
 
+impl State {
+    /// Something was submitted.
+    fn begin(&self, was_done: bool) {
+        if was_done && let Some(target) = &self.target {
+            target.turn();
+        }
+    }
+}
+
 impl Crew {
     pub fn new(max_batches: usize) -> Self {
         let schedule = Schedule::new(1, max_batches);
@@ -46,6 +74,7 @@ impl Crew {
             schedule,
             target: None,
             spare: Vec::new(),
+            threads: 0,
             idle: 0,
             woken: 0,
             waker: None,
@@ -63,7 +92,12 @@ impl Crew {
 
     /// The way of a thread of the pool, until [`Self::stop`].
     pub fn work(&self, number: usize) {
+        abort_on_panic(|| self.take_turns(number));
+    }
+
+    fn take_turns(&self, number: usize) {
         let mut state = self.lock();
+        state.threads += 1;
         // Woken on the processor of who woke it the last time, and did not leave it.
         let (mut in_turn, mut may_leave) = (false, true);
         while !state.stopped {
@@ -104,6 +138,13 @@ impl Crew {
         }
     }
 
+    /// Wakes a thread for work that is left where none is awake to find it.
+    fn leave_to_threads(&self, state: &mut State) {
+        if state.idle == state.threads && state.woken == 0 {
+            self.wake(state);
+        }
+    }
+
     /// Does a task, outside of the lock.
     fn perform<'a>(&'a self, mut state: MutexGuard<'a, State>, task: Task<Call, Arc<Work>>) -> MutexGuard<'a, State> {
         // Each wakes the next, so that submitting wakes one at most.
@@ -135,12 +176,17 @@ impl Crew {
                 let count = work.len();
                 drop((work, target));
                 state = self.lock();
-                let State { schedule, spare, .. } = &mut *state;
+                let State { schedule, spare, target, .. } = &mut *state;
                 schedule.drawn(bin, count, |work| {
                     if let Ok(Work::Triangles(kept)) = Arc::try_unwrap(work) {
                         spare.push(kept);
                     }
                 });
+                if schedule.is_done()
+                    && let Some(target) = target
+                {
+                    target.turn();
+                }
             }
         }
         self.finished.changed();
@@ -152,7 +198,7 @@ impl Crew {
 
     /// Does a task, or waits until somebody did one.
     fn help<'a>(&'a self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
-        if let Some(task) = state.schedule.claim(HELPER) {
+        if let Some(task) = state.schedule.claim(external_thread()) {
             return self.perform(state, task);
         }
         // Workers, who wait between frames, too, sleep at once; here the last of a frame is waited for.
@@ -169,44 +215,83 @@ impl Crew {
         state
     }
 
-    /// Hands in a call. Where there is no room, the caller works until there is.
-    pub fn submit(&self, mut call: Call) {
+    /// Hands in a call or a part of one; `ends`: the call is complete with it. Where there is no room, the caller works until
+    /// there is.
+    pub fn submit(&self, mut call: Call, ends: bool) {
         let weight = call.indices / 3;
-        let mut state = self.lock();
-        loop {
-            // Under the lock: with the order of calls that of clears is settled.
-            call.clears = state.target.as_ref().map_or(0, |target| target.clears());
-            match state.schedule.submit(call, weight) {
-                Ok(worthwhile) => {
-                    if worthwhile {
-                        self.wake(&mut state);
+        abort_on_panic(|| {
+            let mut state = self.lock();
+            loop {
+                // Under the lock: with the order of calls that of clears is settled.
+                call.clears = state.target.as_ref().map_or(0, |target| target.clears());
+                let was_done = state.schedule.is_done();
+                match state.schedule.submit(call, weight, ends) {
+                    Ok(worthwhile) => {
+                        state.begin(was_done);
+                        if worthwhile {
+                            self.wake(&mut state);
+                        } else {
+                            self.leave_to_threads(&mut state);
+                        }
+                        return;
                     }
-                    return;
+                    Err(back) => call = back,
                 }
-                Err(back) => call = back,
+                state = self.help(state);
             }
-            state = self.help(state);
-        }
+        });
     }
 
     /// The same for what needs not be kept.
     pub fn submit_ready(&self, work: impl FnOnce() -> Work) {
+        abort_on_panic(|| self.leave_to_threads(&mut self.push_ready(work)));
+    }
+
+    /// Draws everything that was submitted, then this, before it returns. Where nothing else is in flight, no thread is woken for it.
+    pub fn do_now(&self, work: impl FnOnce() -> Work) {
+        self.flush();
+        abort_on_panic(|| self.finish(self.push_ready(work)));
+    }
+
+    fn push_ready(&self, work: impl FnOnce() -> Work) -> MutexGuard<'_, State> {
         let mut state = self.lock();
         while state.schedule.is_full() {
             state = self.help(state);
         }
+        let was_done = state.schedule.is_done();
         // Made under the lock: clears are numbered in the order in which they are done.
         state.schedule.submit_ready(Arc::new(work()));
+        state.begin(was_done);
+        state
     }
 
     /// Works until everything that is in flight is drawn.
     pub fn flush(&self) {
-        let mut state = self.lock();
-        self.wake(&mut state);
+        abort_on_panic(|| {
+            let mut state = self.lock();
+            self.wake(&mut state);
+            self.finish(state);
+        });
+    }
+
+    fn finish<'a>(&'a self, mut state: MutexGuard<'a, State>) {
         let end = state.schedule.in_flight().end;
         while state.schedule.in_flight().start < end {
             state = self.help(state);
         }
+        // Others may have submitted meanwhile.
+        self.leave_to_threads(&mut state);
+    }
+
+    /// Does one task, if there is one that nobody does yet.
+    pub fn work_once(&self) -> bool {
+        abort_on_panic(|| {
+            let mut state = self.lock();
+            let Some(task) = state.schedule.claim(external_thread()) else { return false };
+            let mut state = self.perform(state, task);
+            self.leave_to_threads(&mut state);
+            true
+        })
     }
 
     /// Nothing is in flight.

@@ -40,6 +40,11 @@ impl Grid {
         (self.columns.len() - 1) * (self.rows.len() - 1)
     }
 
+    /// Columns and rows.
+    pub fn count(&self) -> (u32, u32) {
+        (self.columns.len() as u32 - 1, self.rows.len() as u32 - 1)
+    }
+
     /// The tiles of a bin.
     pub fn tiles(&self, bin: usize) -> TileRect {
         let (x, y) = (bin % (self.columns.len() - 1), bin / (self.columns.len() - 1));

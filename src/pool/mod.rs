@@ -8,7 +8,11 @@
 //!
 //! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
 //! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `processor.rs` moves one
-//! that is woken on its waker's processor, `target.rs` has the bins and their locks, `grid.rs` the pieces of the screen.
+//! that is woken on its waker's processor, `gate.rs` leads to the object, `target.rs` has the bins and their locks, `grid.rs` the
+//! pieces of the screen.
+//!
+//! What the arrays of a call are read for is to keep it. At most `max_jobs` calls are unkept when a call returns, so that a program
+//! may go round among one array more without a flush. Whether what was kept is drawn, only a query can tell.
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
 //! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
@@ -16,9 +20,11 @@
 //! turns with the others, and interrupt one that holds a bin.
 
 mod crew;
+mod gate;
 mod grid;
 mod processor;
 mod schedule;
+mod settings;
 mod sync;
 mod target;
 #[cfg(test)]
@@ -26,20 +32,23 @@ mod tests;
 
 use core::marker::PhantomData;
 use core::ptr::NonNull;
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
+use crate::attachment::Pool;
 use crate::pipeline::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
 use crew::Crew;
-use target::{Bins, Call, Shared, Target, Work};
+use gate::Gate;
+pub use settings::{ThreadStart, ThreadpoolSettings};
+use target::{Bins, Call, Shared, Work};
 
 /// A larger number is a mistake.
 const MAX_THREADS: u32 = 1024;
 /// More bins bring threads no more to do: triangles that reach several are set up for each.
-const BINS_A_THREAD: u32 = 4;
+const BINS_PER_THREAD: u32 = 4;
 /// Larger calls are cut, so that several threads can project them.
 const CALL_TRIANGLES: usize = 1536;
 
@@ -71,35 +80,23 @@ const CALL_TRIANGLES: usize = 1536;
 /// # Ok::<(), masked_occlusion_culling::Error>(())
 /// ```
 pub struct CullingThreadpool {
-    crew: Arc<Crew>,
+    gate: Arc<Gate>,
     threads: Vec<JoinHandle<()>>,
-    bins: Bins,
-    /// The bits of the near plane; NaN while only the object's own counts.
-    near: AtomicU32,
-    /// Held for reading by who submits or queries, for writing by who exchanges it.
-    target: RwLock<Option<Arc<Target>>>,
-    /// Held around each call while calls are recorded, so that the file has them in the order in which they are drawn.
-    recording: Mutex<()>,
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads, which sleep until [`Self::wake_threads`]; of fewer where there are fewer processors besides
-    /// the caller's, but of one at least. The screen is cut into `bins_w` times `bins_h` bins, but into no more than four a
-    /// thread, and none smaller than 128 by 64 pixels; rows of the screen first, for threads side by side would write to the
-    /// same cache lines. At most `max_jobs` batches of calls are in flight. Without threads (0), whoever flushes does the work.
+    /// A pool of `threads` threads that are its own and nothing else out of the ordinary; see [`ThreadpoolSettings`].
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
-    /// where the system starts no more threads.
+    /// As [`Self::with_settings`].
     pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
-        let processors = thread::available_parallelism().map_or(u32::MAX, |count| count.get() as u32);
-        Self::with_processors(threads, bins_w, bins_h, max_jobs, processors)
+        Self::with_processors(threads, bins_w, bins_h, max_jobs, 0)
     }
 
     /// The same where the pool and its caller have so many processors, whatever the system says.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// As [`Self::with_settings`].
     pub fn with_processors(
         threads: u32,
         bins_w: u32,
@@ -107,40 +104,86 @@ impl CullingThreadpool {
         max_jobs: u32,
         processors: u32,
     ) -> Result<Self, Error> {
-        if bins_w == 0 || bins_h == 0 || max_jobs == 0 || threads > MAX_THREADS {
+        let settings = ThreadpoolSettings { threads, bins_w, bins_h, max_jobs, processors, ..Default::default() };
+        Self::with_settings(settings)
+    }
+
+    /// A pool whose threads sleep until [`Self::wake_threads`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
+    /// where the system starts no more threads.
+    pub fn with_settings(settings: ThreadpoolSettings) -> Result<Self, Error> {
+        let ThreadpoolSettings { bins_w, bins_h, max_jobs, .. } = settings;
+        if bins_w == 0 || bins_h == 0 || max_jobs == 0 || settings.threads > MAX_THREADS {
             return Err(Error::InvalidSize);
         }
-        let threads = threads.min(processors.saturating_sub(1).max(1));
-        let mut pool = Self {
-            crew: Arc::new(Crew::new(max_jobs as usize)),
-            threads: Vec::new(),
-            bins: Bins { wide: bins_w, high: bins_h, most: threads.saturating_mul(BINS_A_THREAD) },
-            near: AtomicU32::new(f32::NAN.to_bits()),
-            target: RwLock::new(None),
-            recording: Mutex::new(()),
+        let processors = match settings.processors {
+            0 => thread::available_parallelism().map_or(u32::MAX, |count| count.get() as u32),
+            processors => processors,
         };
-        for number in 0..threads as usize {
-            let crew = pool.crew.clone();
-            let start = thread::Builder::new().name(format!("culling {number}"));
+        let threads = settings.threads.min(processors.saturating_sub(1).max(1));
+        let most = threads.saturating_add(settings.external_threads).saturating_mul(BINS_PER_THREAD);
+        let crew = Arc::new(Crew::new(max_jobs as usize));
+        let gate = Gate::new(crew.clone(), Bins { wide: bins_w, high: bins_h, most });
+        let mut pool = Self { gate: Arc::new(gate), threads: Vec::new() };
+        let started = settings.on_thread_start.map(Arc::new);
+        for number in 0..threads {
+            let (crew, started) = (crew.clone(), started.clone());
+            let work = move || {
+                if let Some(started) = &started {
+                    // The thread works without what the callback did not finish.
+                    let _ = catch_unwind(AssertUnwindSafe(|| started(number)));
+                }
+                crew.work(number as usize);
+            };
+            let name = thread_name(&settings.thread_name, number);
             // Those that did start end with the pool.
-            pool.threads.push(start.spawn(move || crew.work(number)).map_err(|_| Error::OutOfMemory)?);
+            let start = thread::Builder::new().name(name);
+            pool.threads.push(start.spawn(work).map_err(|_| Error::OutOfMemory)?);
         }
         Ok(pool)
     }
 
-    /// Lets the threads work. A second time changes nothing.
-    pub fn wake_threads(&self) {
-        self.crew.set_suspended(false);
+    /// How many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+    pub fn thread_count(&self) -> u32 {
+        self.threads.len() as u32
     }
 
-    /// Lets the threads sleep as soon as each has finished what it is at. Calls are taken in meanwhile.
+    /// Into how many columns and rows of bins the screen is cut.
+    ///
+    /// # Errors
+    /// [`Error::NoBuffer`] where the pool has no object with a buffer.
+    pub fn bin_count(&self) -> Result<(u32, u32), Error> {
+        self.gate.with_buffer(|target| Ok(target.bin_count()))
+    }
+
+    /// Lets the threads work. A second time changes nothing.
+    pub fn wake_threads(&self) {
+        self.gate.crew.set_suspended(false);
+    }
+
+    /// Draws what was submitted, and lets the threads sleep. What is submitted later waits until they are woken, or somebody flushes or
+    /// helps.
     pub fn suspend_threads(&self) {
-        self.crew.set_suspended(true);
+        self.flush();
+        self.gate.crew.set_suspended(true);
     }
 
     /// Waits until everything that was submitted before is drawn.
     pub fn flush(&self) {
-        self.crew.flush();
+        self.gate.crew.flush();
+    }
+
+    /// Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of an engine's own job system, which
+    /// may do so beside the pool's threads or in their place. False: there is nothing to do now that nobody does yet.
+    pub fn work_once(&self) -> bool {
+        self.gate.crew.work_once()
+    }
+
+    /// Is everything drawn that was submitted? A loop of [`Self::work_once`] until then is a flush that never sleeps.
+    pub fn is_done(&self) -> bool {
+        self.gate.crew.is_done()
     }
 
     /// Draws into this object from now on, which the pool owns until [`Self::take_buffer`]. One that it had is dropped, after
@@ -148,43 +191,27 @@ impl CullingThreadpool {
     pub fn set_buffer(&self, moc: MaskedOcclusionCulling) {
         let moc = NonNull::from(Box::leak(Box::new(moc)));
         // SAFETY: leaked just now, and freed with the target.
-        unsafe { self.exchange(Some((moc, true))) };
+        let done = unsafe { self.gate.exchange(Some((moc, true))) };
+        debug_assert_eq!(done, Ok(()), "nobody else has it");
     }
 
     /// Flushes, and hands the object back. Nothing where there is none that the pool owns.
     pub fn take_buffer(&self) -> Option<MaskedOcclusionCulling> {
-        let mut gate = self.gate();
-        if !gate.as_ref()?.is_owned() {
-            return None;
-        }
-        self.flush();
-        self.crew.set_target(None);
-        Arc::into_inner(gate.take()?)?.into_owned()
+        self.gate.take_owned()
     }
 
-    /// Draws into this object from now on, or into none, after what was submitted is drawn.
+    /// Draws into this object from now on, or into none, after what was submitted is drawn. The object keeps its near plane.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] where the object belongs to another pool; nothing is changed.
     ///
     /// # Safety
-    /// The object stays where it is until another one is set or the pool is dropped; meanwhile it is used through the pool only, or
-    /// after a flush while nobody calls the pool.
-    pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) {
+    /// The object stays where it is until another one is set, the pool is dropped, or the object is, which may be in any order.
+    /// Meanwhile no `&mut` to it is used while the pool has something in flight or is called; `&` may be used for queries at any time,
+    /// but while the pool sets an object or a resolution.
+    pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) -> Result<(), Error> {
         // SAFETY: the caller's contract.
-        unsafe { self.exchange(moc.map(|moc| (moc, false))) }
-    }
-
-    /// # Safety
-    /// As [`Target::new`].
-    unsafe fn exchange(&self, moc: Option<(NonNull<MaskedOcclusionCulling>, bool)>) {
-        let mut gate = self.gate();
-        self.flush();
-        // SAFETY: the caller's contract.
-        let new = moc.map(|(moc, owned)| Arc::new(unsafe { Target::new(moc, owned, self.bins) }));
-        if let Some(target) = &new {
-            // NaN is refused: none was set.
-            let _ = target.moc().set_near_shared(f32::from_bits(self.near.load(Relaxed)));
-        }
-        self.crew.set_target(new.clone());
-        *gate = new;
+        unsafe { self.gate.exchange(moc.map(|moc| (moc, false))) }
     }
 
     /// Gives the object another resolution, after what was submitted is drawn, and clears it.
@@ -192,51 +219,32 @@ impl CullingThreadpool {
     /// # Errors
     /// [`Error::NoBuffer`] where the pool has no object; as [`MaskedOcclusionCulling::set_resolution`].
     pub fn set_resolution(&self, width: u32, height: u32) -> Result<(), Error> {
-        let mut gate = self.gate();
-        self.flush();
-        let target = gate.as_ref().ok_or(Error::NoBuffer)?;
-        // SAFETY: nothing is in flight, and nobody submits or queries while the gate is held.
-        unsafe { &mut *target.pointer().as_ptr() }.set_resolution(width, height)?;
-        self.cut_again(&mut gate);
-        Ok(())
+        self.gate.resize(|moc| moc.set_resolution(width, height))
     }
 
-    /// Makes the bins anew. Nothing is in flight.
-    fn cut_again(&self, gate: &mut Option<Arc<Target>>) {
-        self.crew.set_target(None);
-        // Nobody else holds it: threads let go of it before they report what they did.
-        if let Some(target) = gate.take().and_then(Arc::into_inner) {
-            *gate = Some(Arc::new(target.resized(self.bins)));
-        }
-        self.crew.set_target(gate.clone());
-    }
-
-    /// Sets the near plane, in clip-space w, of the calls that follow, and of the object.
+    /// Flushes, and sets the object's near plane, in clip-space w.
     ///
     /// # Errors
-    /// [`Error::InvalidNumber`] for NaN or an infinity; the plane stays where it was.
+    /// [`Error::InvalidNumber`] for NaN or an infinity: the plane stays where it was. [`Error::NoBuffer`] where the pool has no object.
     pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
         }
-        self.near.store(near.to_bits(), Relaxed);
-        match &*self.pass() {
-            Some(target) => {
-                let _recording = self.recording(target);
-                target.moc().set_near_shared(near)
-            }
-            None => Ok(()),
-        }
+        self.flush();
+        let pass = self.gate.pass();
+        let target = pass.as_ref().ok_or(Error::NoBuffer)?;
+        let _recording = self.gate.recording(target);
+        target.moc().set_near_shared(near)
     }
 
-    /// Clears the object, in order with the calls around it. What was drawn before hides nothing from now on.
+    /// Flushes, and clears the object. The buffer is clear when it returns.
     ///
     /// # Errors
     /// [`Error::NoBuffer`].
     pub fn clear_buffer(&self) -> Result<(), Error> {
-        self.with_buffer(|target| {
-            let _recording = self.recording(target);
-            self.crew.submit_ready(|| Work::Clear(target.count_clear()));
+        self.gate.with_buffer(|target| {
+            let _recording = self.gate.recording(target);
+            self.gate.crew.do_now(|| Work::Clear(target.count_clear()));
             target.moc().recorder().clear_buffer();
             Ok(())
         })
@@ -279,12 +287,15 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<(), Error> {
-        self.with_buffer(|target| {
-            let _recording = self.recording(target);
+        self.gate.with_buffer(|target| {
+            let _recording = self.gate.recording(target);
             let near = target.moc().near_clip_plane();
-            for piece in triangles.chunks(3 * CALL_TRIANGLES) {
-                let (triangles, indices) = (piece.as_ptr(), piece.len());
-                self.crew.submit(Call { vertices, triangles, indices, options: *options, near, clears: 0 });
+            let parts = triangles.chunks(3 * CALL_TRIANGLES);
+            let last = parts.len();
+            for (part, number) in parts.zip(1..) {
+                let (triangles, indices) = (part.as_ptr(), part.len());
+                let call = Call { vertices, triangles, indices, options: *options, near, clears: 0 };
+                self.gate.crew.submit(call, number == last);
             }
             // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
             unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
@@ -301,12 +312,13 @@ impl CullingThreadpool {
     /// # Errors
     /// As there.
     pub unsafe fn merge_buffers(&self, others: &[&MaskedOcclusionCulling]) -> Result<(), Error> {
-        self.with_buffer(|target| {
-            target.moc().mergeable(others)?;
-            let others = others.iter().map(|&other| NonNull::from(other));
+        self.gate.with_buffer(|target| {
             // With itself changes nothing.
-            let others = others.filter(|&other| other != target.pointer()).map(Shared).collect();
-            self.crew.submit_ready(|| Work::Merge(others));
+            let others = others.iter().copied().filter(|&other| NonNull::from(other) != target.pointer());
+            let others: Vec<&MaskedOcclusionCulling> = others.collect();
+            target.moc().mergeable(&others)?;
+            let others = others.into_iter().map(|other| Shared(NonNull::from(other))).collect();
+            self.gate.crew.submit_ready(|| Work::Merge(others));
             Ok(())
         })
     }
@@ -323,16 +335,7 @@ impl CullingThreadpool {
         y_max: f32,
         w_min: f32,
     ) -> Result<CullingResult, Error> {
-        self.with_buffer(|target| {
-            let edges = [x_min, y_min, x_max, y_max];
-            let tiles = target.moc().rectangle_tiles(edges)?;
-            let recording = self.recording(target);
-            // Before: what is asked while something is drawn may be answered otherwise later, and no answer can be held to it.
-            let settled = recording.is_some() && self.crew.is_done();
-            let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
-            target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
-            Ok(result)
-        })
+        self.gate.test_rect([x_min, y_min, x_max, y_max], w_min)
     }
 
     /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`]. `Visible` where they are
@@ -361,23 +364,8 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        let mesh = Mesh { vertices, triangles, options };
-        self.with_buffer(|target| {
-            let recording = self.recording(target);
-            // As in `test_rect`.
-            let settled = recording.is_some() && self.crew.is_done();
-            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-            let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(&mesh) })?;
-            // SAFETY: as above.
-            unsafe { target.moc().recorder().test_triangles(settled.then_some(result), &mesh) };
-            Ok(result)
-        })
-    }
-
-    /// While calls are recorded: the right to be the next.
-    fn recording(&self, target: &Target) -> Option<MutexGuard<'_, ()>> {
-        // Whoever has it may work meanwhile, for which it is not needed.
-        target.moc().recorder().is_on().then(|| self.recording.lock().unwrap_or_else(PoisonError::into_inner))
+        // SAFETY: the caller's contract.
+        unsafe { self.gate.test_mesh(&Mesh { vertices, triangles, options }) }
     }
 
     /// Looks at the object itself, which has a buffer.
@@ -385,7 +373,7 @@ impl CullingThreadpool {
         &self,
         look: impl FnOnce(&MaskedOcclusionCulling) -> Result<R, Error>,
     ) -> Result<R, Error> {
-        self.with_buffer(|target| look(target.moc()))
+        self.gate.with_buffer(|target| look(target.moc()))
     }
 
     /// Flushes, and writes the depth of every pixel; see [`MaskedOcclusionCulling::compute_pixel_depth_buffer`].
@@ -405,10 +393,10 @@ impl CullingThreadpool {
         self.flush();
         let write = |moc: &MaskedOcclusionCulling| {
             let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
-            moc.compute_pixel_depth_buffer(array(width as usize * height as usize)?, flip_y)?;
+            moc.write_pixels(array(width as usize * height as usize)?, flip_y)?;
             Ok(CullingResult::Visible)
         };
-        self.with_buffer(|target| target.query(target.all_tiles(), write)).map(|_| ())
+        self.gate.with_buffer(|target| target.query(target.all_tiles(), write)).map(|_| ())
     }
 
     /// What the object counted, after a flush; see [`MaskedOcclusionCulling::statistics`].
@@ -417,46 +405,28 @@ impl CullingThreadpool {
     /// [`Error::NoBuffer`].
     pub fn statistics(&self) -> Result<crate::Statistics, Error> {
         self.flush();
-        Ok(self.pass().as_ref().ok_or(Error::NoBuffer)?.moc().statistics())
-    }
-
-    /// The target, whose bins fit its object: after a flush its owner may have given it another resolution.
-    fn pass(&self) -> RwLockReadGuard<'_, Option<Arc<Target>>> {
-        loop {
-            let pass = self.target.read().unwrap_or_else(PoisonError::into_inner);
-            if !pass.as_ref().is_some_and(|target| target.is_outdated()) {
-                return pass;
-            }
-            drop(pass);
-            let mut gate = self.gate();
-            self.flush();
-            self.cut_again(&mut gate);
-        }
-    }
-
-    /// The target, if it has a buffer.
-    fn with_buffer<R>(&self, call: impl FnOnce(&Target) -> Result<R, Error>) -> Result<R, Error> {
-        let pass = self.pass();
-        let target = pass.as_ref().ok_or(Error::NoBuffer)?;
-        target.moc().buffer()?;
-        call(target)
-    }
-
-    fn gate(&self) -> RwLockWriteGuard<'_, Option<Arc<Target>>> {
-        self.target.write().unwrap_or_else(PoisonError::into_inner)
+        Ok(self.gate.pass().as_ref().ok_or(Error::NoBuffer)?.moc().statistics())
     }
 }
 
 impl Drop for CullingThreadpool {
     /// Draws what was submitted and ends the threads.
     fn drop(&mut self) {
-        self.flush();
-        self.crew.stop();
+        // The object may go before or after.
+        self.gate.close();
+        self.gate.crew.stop();
         for thread in self.threads.drain(..) {
             // What a thread says when it ends in a panic, it has said already.
             let _ = thread.join();
         }
     }
+}
+
+/// What the system shows as the name of a thread.
+fn thread_name(prefix: &str, number: u32) -> String {
+    // A NUL would end it, and is not accepted.
+    let prefix: String = prefix.chars().take_while(|&c| c != '\0').collect();
+    format!("{prefix} {number}")
 }
 
 /// Calls of a [`CullingThreadpool::scope`].

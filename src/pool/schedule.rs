@@ -15,12 +15,16 @@ pub(super) const BATCH_WEIGHT: usize = 2048;
 pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch that weighs so much is worth a thread's while.
 pub(super) const WORTHWHILE: usize = 512;
-/// So many batches may be ready that a thread's own bin did not draw, before the thread draws them instead of keeping more.
-const LEAD: u64 = 3;
+/// So much may be ready that a thread's own bin did not draw, before the thread draws it instead of keeping more.
+const LEAD: usize = 5 * BATCH_WEIGHT / 2;
 /// The same of a bin that another thread drew in last, whose tiles are in the cache of that one, or that nobody drew in yet.
-const STRANGERS_LEAD: u64 = 6;
+const STRANGERS_LEAD: usize = 2 * LEAD;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
+
+/// Makes the schedule panic, to see what comes of it.
+#[cfg(test)]
+pub(super) static BREAKS: core::sync::atomic::AtomicBool = core::sync::atomic::AtomicBool::new(false);
 
 /// What a thread is to do.
 pub(super) enum Task<C, W> {
@@ -31,8 +35,8 @@ pub(super) enum Task<C, W> {
 }
 
 enum Stage<C, W> {
-    /// Takes calls while it is the last; with their weight.
-    Open(Vec<C>, usize),
+    /// Takes calls while it is the last.
+    Open(Vec<C>),
     /// Somebody keeps it.
     Taken,
     Ready(W),
@@ -42,6 +46,10 @@ struct Batch<C, W> {
     stage: Stage<C, W>,
     /// Bins that did not draw it yet.
     bins_left: usize,
+    /// Calls of the application that end in it: a large one is submitted in parts.
+    ends: usize,
+    /// What its calls weigh.
+    weight: usize,
 }
 
 #[derive(Clone, Default)]
@@ -62,14 +70,25 @@ pub(super) struct Schedule<C, W> {
     first: u64,
     open: u64,
     ready: u64,
+    /// Most batches in flight, and most calls whose arrays are still read.
     max: usize,
+    /// Calls whose arrays are still read.
+    calls: usize,
 }
 
 impl<C, W: Clone> Schedule<C, W> {
-    /// For `bins` bins, with at most `max` batches in flight.
+    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be kept.
     pub fn new(bins: usize, max: usize) -> Self {
         let (first, open, ready) = (0, 0, 0);
-        Self { bins: vec![Bin::default(); bins], batches: VecDeque::new(), first, open, ready, max: max.max(1) }
+        Self {
+            bins: vec![Bin::default(); bins],
+            batches: VecDeque::new(),
+            first,
+            open,
+            ready,
+            max: max.max(1),
+            calls: 0,
+        }
     }
 
     /// Numbers of the first batch in flight, and of the next to come.
@@ -91,24 +110,36 @@ impl<C, W: Clone> Schedule<C, W> {
         self.bins = (0..bins).map(|thread| Bin { next: self.first, busy: false, thread }).collect();
     }
 
-    /// Takes a call in, or gives it back where there is no room. `weight`: its triangles. True: there is something worth
-    /// waking a thread for.
-    pub fn submit(&mut self, call: C, weight: usize) -> Result<bool, C> {
-        let weight = weight + CALL_WEIGHT;
-        if let Some(Batch { stage: Stage::Open(calls, sum), .. }) = self.batches.back_mut()
+    /// Takes a call or a part of one in, or gives it back where there is no room. `weight`: its triangles; `ends`: the call is
+    /// complete with it. True: there is something worth waking a thread for.
+    pub fn submit(&mut self, call: C, weight: usize, ends: bool) -> Result<bool, C> {
+        if ends && self.calls >= self.max {
+            return Err(call);
+        }
+        let (weight, ends) = (weight + CALL_WEIGHT, usize::from(ends));
+        let most = self.batch_calls();
+        if let Some(Batch { stage: Stage::Open(calls), ends: ending, weight: sum, .. }) = self.batches.back_mut()
             && *sum + weight <= BATCH_WEIGHT
+            && calls.len() < most
         {
             calls.push(call);
-            let before = *sum;
             *sum += weight;
-            return Ok(before < WORTHWHILE && *sum >= WORTHWHILE);
+            *ending += ends;
+            self.calls += ends;
+            return Ok(*sum >= WORTHWHILE && *sum - weight < WORTHWHILE || calls.len() == most);
         }
         if self.is_full() {
             return Err(call);
         }
         let closes = matches!(self.batches.back(), Some(Batch { stage: Stage::Open(..), .. }));
-        self.push(Stage::Open(vec![call], weight));
-        Ok(closes || weight >= WORTHWHILE)
+        self.push(Stage::Open(vec![call]), ends, weight);
+        self.calls += ends;
+        Ok(closes || weight >= WORTHWHILE || most == 1)
+    }
+
+    /// A batch takes no more calls: with half of those that may wait, one fills while another is kept.
+    fn batch_calls(&self) -> usize {
+        self.max.div_ceil(2)
     }
 
     /// Is there no room for another batch?
@@ -122,12 +153,12 @@ impl<C, W: Clone> Schedule<C, W> {
     /// If it is full.
     pub fn submit_ready(&mut self, work: W) {
         assert!(!self.is_full());
-        self.push(Stage::Ready(work));
+        self.push(Stage::Ready(work), 0, 0);
         self.find_ready();
     }
 
-    fn push(&mut self, stage: Stage<C, W>) {
-        self.batches.push_back(Batch { stage, bins_left: self.bins.len() });
+    fn push(&mut self, stage: Stage<C, W>, ends: usize, weight: usize) {
+        self.batches.push_back(Batch { stage, bins_left: self.bins.len(), ends, weight });
     }
 
     fn find_ready(&mut self) {
@@ -136,15 +167,19 @@ impl<C, W: Clone> Schedule<C, W> {
         while matches!(after(ready), Some(Batch { stage: Stage::Ready(_), .. })) {
             ready += 1;
         }
+        let newly = (self.ready - self.first) as usize..(ready - self.first) as usize;
+        self.calls -= self.batches.range(newly).map(|batch| batch.ends).sum::<usize>();
         self.ready = ready;
     }
 
     /// Something to do for a thread, if there is.
     pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
+        #[cfg(test)]
+        assert!(!BREAKS.load(core::sync::atomic::Ordering::Relaxed), "broken on purpose");
         // A bin that the thread drew in last has its tiles in the thread's cache.
         let own = self.most_behind(|bin| bin.thread == thread);
         let any = self.most_behind(|_| true);
-        let far = |bin: Option<usize>, lead: u64| bin.filter(|&k| self.bins[k].next + lead <= self.ready);
+        let far = |bin: Option<usize>, lead: usize| bin.filter(|&k| self.is_behind(&self.bins[k], lead));
         // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
         if let Some(bin) = far(own, LEAD).or(far(any, STRANGERS_LEAD)) {
             return Some(self.claim_bin(bin, thread));
@@ -156,20 +191,20 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// The first batch that nobody keeps, unless it is the last one and weighs less.
     fn claim_batch(&mut self, least: usize) -> Option<Task<C, W>> {
-        let end = self.in_flight().end;
+        let (end, most) = (self.in_flight().end, self.batch_calls());
         while self.open < end {
-            let batch = self.open;
-            let stage = &mut self.batches[(batch - self.first) as usize].stage;
-            match stage {
-                Stage::Open(_, sum) if batch + 1 == end && *sum < least => return None,
-                Stage::Open(calls, _) => {
-                    let calls = core::mem::take(calls);
-                    *stage = Stage::Taken;
-                    self.open += 1;
-                    return Some(Task::Keep { batch, calls });
+            let number = self.open;
+            let batch = &mut self.batches[(number - self.first) as usize];
+            if let Stage::Open(calls) = &mut batch.stage {
+                if number + 1 == end && batch.weight < least && calls.len() < most {
+                    return None;
                 }
-                _ => self.open += 1,
+                let calls = core::mem::take(calls);
+                batch.stage = Stage::Taken;
+                self.open += 1;
+                return Some(Task::Keep { batch: number, calls });
             }
+            self.open += 1;
         }
         None
     }
@@ -177,6 +212,15 @@ impl<C, W: Clone> Schedule<C, W> {
     /// Is there something to draw in a bin that nobody draws in?
     fn is_due(&self, bin: &Bin) -> bool {
         !bin.busy && bin.next < self.ready
+    }
+
+    /// Is there so much to draw in a bin?
+    fn is_behind(&self, bin: &Bin, lead: usize) -> bool {
+        let mut weight = 0;
+        self.batches.range((bin.next - self.first) as usize..(self.ready - self.first) as usize).any(|batch| {
+            weight += batch.weight;
+            weight >= lead
+        })
     }
 
     /// Of the bins that are due and wanted the one that is most behind.
@@ -245,19 +289,31 @@ mod tests {
         let mut submitted = Vec::new();
         let mut done = Vec::new();
         let mut tasks: Vec<Task<u32, Vec<u32>>> = Vec::new();
-        let calls = random.u32(0..200);
-        while (submitted.len() as u32) < calls || !schedule.is_done() {
+        // Whether each part is the last of its call, and whether it was kept.
+        let (mut ends, mut kept): (Vec<bool>, Vec<bool>) = Default::default();
+        let parts = random.u32(0..200);
+        while (submitted.len() as u32) < parts || !schedule.is_done() {
             let id = submitted.len() as u32;
-            let submits = id < calls && (random.bool() || schedule.is_done());
+            let submits = id < parts && (random.bool() || schedule.is_done());
             if submits && random.u8(0..8) == 0 {
                 if !schedule.is_full() {
                     schedule.submit_ready(vec![id]);
                     submitted.push(id);
+                    (ends.push(false), kept.push(true));
                 }
-            } else if submits && schedule.submit(id, random.usize(0..2 * BATCH_WEIGHT)).is_ok() {
-                submitted.push(id);
+            } else if submits {
+                let last = random.u8(0..4) != 0;
+                if schedule.submit(id, random.usize(0..2 * BATCH_WEIGHT), last).is_ok() {
+                    submitted.push(id);
+                    (ends.push(last), kept.push(false));
+                }
             }
             assert!(schedule.in_flight().end - schedule.in_flight().start <= max as u64);
+            let unkept = kept.iter().position(|&kept| !kept).unwrap_or(kept.len());
+            assert!(
+                ends[unkept..].iter().filter(|&&last| last).count() <= max,
+                "seed {seed}: arrays of too many calls"
+            );
             let has_work = schedule.has_work();
             if tasks.len() < threads && random.bool() {
                 let task = schedule.claim(random.usize(0..bins + 1));
@@ -265,7 +321,10 @@ mod tests {
                 tasks.extend(task);
             } else if !tasks.is_empty() {
                 match tasks.swap_remove(random.usize(0..tasks.len())) {
-                    Task::Keep { batch, calls } => schedule.kept(batch, calls),
+                    Task::Keep { batch, calls } => {
+                        calls.iter().for_each(|&id| kept[id as usize] = true);
+                        schedule.kept(batch, calls);
+                    }
                     Task::Draw { bin, work } => {
                         drawn[bin].extend(work.iter().flatten());
                         schedule.drawn(bin, work.len(), |work| done.extend(work));
@@ -286,14 +345,34 @@ mod tests {
 
     #[test]
     fn small_calls_share_a_batch_and_a_thread_is_woken_once() {
-        let mut schedule: Schedule<u32, Vec<u32>> = Schedule::new(1, 4);
+        let mut schedule: Schedule<u32, Vec<u32>> = Schedule::new(1, 400);
         let mut woken = 0;
         let fit = BATCH_WEIGHT / (12 + CALL_WEIGHT);
         for id in 0..fit as u32 {
-            woken += u32::from(schedule.submit(id, 12).unwrap());
+            woken += u32::from(schedule.submit(id, 12, true).unwrap());
         }
         assert_eq!((schedule.in_flight(), woken), (0..1, 1));
-        assert!(schedule.submit(0, 12).unwrap());
+        assert!(schedule.submit(0, 12, true).unwrap());
         assert_eq!(schedule.in_flight(), 0..2);
+    }
+
+    #[test]
+    fn no_more_calls_wait_to_be_kept_than_were_asked_for() {
+        for (most, batches) in [(1, 1), (2, 2), (5, 2), (32, 2)] {
+            let mut schedule: Schedule<u32, Vec<u32>> = Schedule::new(1, most);
+            for id in 0..most as u32 {
+                assert!(schedule.submit(id, 1, true).is_ok());
+            }
+            assert_eq!(schedule.submit(7, 1, true), Err(7));
+            assert_eq!(schedule.in_flight(), 0..batches);
+            // One batch is kept: its calls are done with their arrays, though nothing is drawn.
+            let Some(Task::Keep { batch, calls }) = schedule.claim(0) else { panic!("a full batch is worth keeping") };
+            schedule.kept(batch, calls);
+            assert_eq!(
+                schedule.submit(7, 1, true).is_ok(),
+                (batches as usize) < most,
+                "{most}: no more batches, either"
+            );
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What threads wait on, in one place, so that a test can put a model in its stead (`tests/pool_interleavings.rs`).
 
 use core::hint::spin_loop;
-use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::thread::yield_now;
 use std::time::{Duration, Instant};
 
@@ -35,4 +35,11 @@ impl Glance {
             yield_now();
         }
     }
+}
+
+/// The number of a thread that is not the pool's, so that it finds the bins again that it drew in. Threads of pools count from 0 on.
+pub(super) fn external_thread() -> usize {
+    static THREADS: AtomicUsize = AtomicUsize::new(0);
+    thread_local!(static NUMBER: usize = usize::MAX - THREADS.fetch_add(1, Relaxed));
+    NUMBER.with(|&number| number)
 }

@@ -109,6 +109,16 @@ impl Target {
         self.bins.len()
     }
 
+    /// Columns and rows of bins.
+    pub fn bin_count(&self) -> (u32, u32) {
+        self.grid.count()
+    }
+
+    /// Something is in flight from now on, or nothing any more.
+    pub fn turn(&self) {
+        self.moc().attachment().turn();
+    }
+
     /// Counts a clear before it is submitted: from now on what was drawn before hides nothing.
     pub fn count_clear(&self) -> u64 {
         self.clears.fetch_add(1, Ordering::AcqRel) + 1

@@ -1,13 +1,59 @@
-//! How many threads a pool starts.
+//! How many threads a pool starts, and what happens when its scheduler breaks.
 
+use std::process::Command;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Duration;
+
+use super::schedule::BREAKS;
 use super::{CullingThreadpool, MAX_THREADS};
+use crate::{DrawOptions, MaskedOcclusionCulling, VertexLayout, Vertices};
 
 #[test]
 fn there_are_no_more_threads_than_processors_besides_the_callers_but_one_at_least() {
-    for (threads, processors, started) in [(0, 8, 0), (1, 1, 1), (1, 8, 1), (8, 0, 1), (8, 1, 1), (8, 2, 1), (8, 5, 4)]
-    {
+    for (threads, processors, started) in [(0, 8, 0), (1, 1, 1), (1, 8, 1), (8, 1, 1), (8, 2, 1), (8, 5, 4)] {
         let pool = CullingThreadpool::with_processors(threads, 4, 4, 32, processors).unwrap();
-        assert_eq!(pool.threads.len(), started, "{threads} threads, {processors} processors");
+        assert_eq!(pool.thread_count(), started, "{threads} threads, {processors} processors");
     }
     assert!(CullingThreadpool::with_processors(MAX_THREADS + 1, 4, 4, 32, 2).is_err());
+}
+
+/// Breaks the scheduler while slices are lent to it; in a process of its own.
+fn break_it(who: &str) {
+    let mut culling = MaskedOcclusionCulling::default();
+    culling.set_resolution(640, 400).unwrap();
+    let pool = CullingThreadpool::with_processors(1, 1, 1, 32, 2).unwrap();
+    pool.set_buffer(culling);
+    let (vertices, triangles) = (vec![1.0; 16], [0, 1, 2]);
+    let vertices = Vertices::new(&vertices, VertexLayout::CLIP_SPACE).unwrap();
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        pool.scope(|scope| {
+            scope.render_triangles(vertices, &triangles, &DrawOptions::default()).unwrap();
+            BREAKS.store(true, Relaxed);
+            if who == "worker" {
+                pool.wake_threads();
+                // The thread is gone by then, or the flush below goes the same way.
+                std::thread::sleep(Duration::from_millis(200));
+            }
+        });
+    }));
+    // Neither: what was lent would be read later.
+    println!("came back, unwinding: {}", caught.is_err());
+    std::process::exit(0);
+}
+
+#[test]
+fn a_scheduler_that_panics_ends_the_process() {
+    const NAME: &str = "pool::tests::a_scheduler_that_panics_ends_the_process";
+    if let Ok(who) = std::env::var("MOC_TEST_BREAKS") {
+        break_it(&who);
+    }
+    for who in ["worker", "flush"] {
+        let program = std::env::current_exe().unwrap();
+        let mut child = Command::new(program);
+        child.args([NAME, "--exact", "--nocapture"]).env("MOC_TEST_BREAKS", who);
+        let output = child.output().unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success(), "{who}: it came back");
+        assert!(errors.contains("broken on purpose") && errors.contains("aborting"), "{who}: {errors}");
+    }
 }

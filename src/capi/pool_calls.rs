@@ -1,0 +1,379 @@
+//! What a pool draws and answers.
+
+use super::mesh::{CheckedMesh, MeshArguments};
+use super::pointers::{check_out, objects, read, slice_mut};
+use super::pool::{MOC_Threadpool, handle};
+use super::pool_state::State;
+use super::status::{MOC_Status, guard, guard_result};
+use super::types::{self, MOC_VertexLayout};
+use crate::{CullingResult, Error, MaskedOcclusionCulling, VertexLayout};
+
+impl MOC_Threadpool {
+    /// # Safety
+    /// As [`MeshArguments::check`].
+    unsafe fn check<'a>(&self, arguments: MeshArguments) -> Result<CheckedMesh<'a>, Error> {
+        // SAFETY: the caller's contract.
+        self.pool.with_object(|moc| unsafe { arguments.check(moc) })
+    }
+
+    /// A mesh with what the calling thread has set, checked.
+    ///
+    /// # Safety
+    /// As [`MeshArguments::check`].
+    unsafe fn with_state<'a>(
+        &self,
+        vertices: *const f32,
+        triangles: *const u32,
+        n_triangles: i32,
+        winding: i32,
+        clip_planes: i32,
+    ) -> Result<CheckedMesh<'a>, Error> {
+        let State { matrix, layout } = self.state.get();
+        let arguments = MeshArguments {
+            vertices,
+            vertex_floats: None,
+            triangles,
+            n_triangles,
+            model_to_clip: matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
+            winding,
+            clip_planes,
+            layout: &raw const layout,
+        };
+        // SAFETY: the caller's contract, and two locals.
+        unsafe { self.check(arguments) }
+    }
+
+    /// # Safety
+    /// As MOC_ThreadpoolRenderMesh and [`MeshArguments::check`].
+    unsafe fn render(&self, arguments: MeshArguments) -> Result<(), Error> {
+        // SAFETY: the caller's contract.
+        unsafe {
+            let mesh = self.check(arguments)?;
+            self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)
+        }
+    }
+
+    /// # Safety
+    /// As [`MeshArguments::check`].
+    unsafe fn test(&self, arguments: MeshArguments) -> Result<CullingResult, Error> {
+        // SAFETY: the caller's contract.
+        unsafe {
+            let mesh = self.check(arguments)?;
+            self.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)
+        }
+    }
+}
+
+/// Sets the matrix of the calling thread's calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+/// vertices are in clip space. A thread that never set a matrix or a layout on this pool has those that any thread set last, so that
+/// one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
+///
+/// Errors: MOC_STATUS_NULL_POINTER for the pool.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, model_to_clip: *const f32) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, matrix) = unsafe { (handle(pool)?, read(model_to_clip.cast::<[f32; 16]>())) };
+        pool.state.change(|state| state.matrix = matrix);
+        Ok(())
+    })
+}
+
+/// Sets the vertex layout of the calling thread's calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix:
+/// with one the last offset names z. As MOC_ThreadpoolSetMatrix for threads that set none.
+///
+/// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
+    pool: *const MOC_Threadpool,
+    layout: *const MOC_VertexLayout,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
+        let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
+        if layout.stride < 0 {
+            return Err(Error::InvalidLayout);
+        }
+        pool.state.change(|state| state.layout = layout);
+        Ok(())
+    })
+}
+
+/// MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and the arrays
+/// of all calls before may be changed or freed.
+///
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
+}
+
+/// MOC_ThreadpoolRenderMesh with the matrix and the vertex layout that the calling thread has set.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolRenderMesh.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    winding: i32,
+    clip_planes: i32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let handle = unsafe { handle(pool) }?;
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
+        // SAFETY: the caller's contract.
+        unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    })
+}
+
+/// Submits occluders and returns at once, or works until no more than `max_jobs` calls read their arrays. The arguments are those of
+/// MOC_RenderTriangles; the matrix and the layout are copied. The near plane is the object's.
+///
+/// Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
+/// are until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
+/// `model_to_clip` and `layout` are null or can be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool)?.render(mesh) })
+}
+
+/// As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices` on: an index that names a vertex
+/// that does not lie whole within it is an error, and nothing is drawn.
+///
+/// Errors: as MOC_RenderTrianglesChecked.
+///
+/// # Safety
+/// As MOC_ThreadpoolRenderMesh, where `vertices` can be read for `vertex_floats` floats whatever the indices are.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    vertex_floats: usize,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: Some(vertex_floats),
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { handle(pool)?.render(mesh) })
+}
+
+/// MOC_TestTriangles against what is drawn by now.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestMesh(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
+}
+
+/// MOC_TestTrianglesChecked against what is drawn by now.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_TestTrianglesChecked. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestMeshChecked(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    vertex_floats: usize,
+    triangles: *const u32,
+    n_triangles: i32,
+    model_to_clip: *const f32,
+    winding: i32,
+    clip_planes: i32,
+    layout: *const MOC_VertexLayout,
+    result: *mut i32,
+) -> MOC_Status {
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: Some(vertex_floats),
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
+}
+
+/// MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
+    pool: *const MOC_Threadpool,
+    xmin: f32,
+    ymin: f32,
+    xmax: f32,
+    ymax: f32,
+    wmin: f32,
+    result: *mut i32,
+) -> MOC_Status {
+    let query = || {
+        check_out(result)?;
+        // SAFETY: the caller's contract.
+        unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin)
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// MOC_ThreadpoolTestMesh with the matrix and the vertex layout that the calling thread has set.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
+    pool: *const MOC_Threadpool,
+    vertices: *const f32,
+    triangles: *const u32,
+    n_triangles: i32,
+    winding: i32,
+    clip_planes: i32,
+    result: *mut i32,
+) -> MOC_Status {
+    let query = || {
+        // SAFETY: the caller's contract.
+        let handle = unsafe { handle(pool) }?;
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
+        // SAFETY: the caller's contract.
+        unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+    };
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, query) }
+}
+
+/// MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
+///
+/// Errors: as there.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
+    pool: *const MOC_Threadpool,
+    out: *mut f32,
+    flip_y: i32,
+) -> MOC_Status {
+    guard(|| {
+        check_out(out)?;
+        // SAFETY: the caller's contract.
+        let pool = &unsafe { handle(pool) }?.pool;
+        let flip = types::flag(flip_y)?;
+        pool.with_pixels(
+            |pixels| {
+                // SAFETY: the caller's contract.
+                unsafe { slice_mut(out, pixels) }
+            },
+            flip,
+        )
+    })
+}
+
+/// Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
+/// MOC_MergeBuffers: each thread takes pieces of the screen.
+///
+/// Errors: as there; nothing is folded.
+///
+/// # Safety
+/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
+/// until MOC_ThreadpoolFlush.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
+    pool: *const MOC_Threadpool,
+    others: *const *const MaskedOcclusionCulling,
+    count: u32,
+) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
+        // SAFETY: the caller's contract.
+        unsafe { pool.pool.merge_buffers(&others) }
+    })
+}

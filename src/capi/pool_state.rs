@@ -1,0 +1,58 @@
+//! The matrix and the vertex layout that are set on a pool: each thread has its own, so that no thread draws or tests with what
+//! another one set a moment ago.
+
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use super::types::MOC_VertexLayout;
+use crate::VertexLayout;
+
+#[derive(Clone, Copy)]
+pub(super) struct State {
+    pub matrix: Option<[f32; 16]>,
+    pub layout: MOC_VertexLayout,
+}
+
+/// What was set on one pool.
+pub(super) struct PoolState {
+    /// By whichever thread came last: for threads that never set anything. Its address names the pool.
+    last: Arc<Mutex<State>>,
+}
+
+thread_local! {
+    /// What this thread set, for each pool that is still there.
+    static OWN: RefCell<Vec<(Weak<Mutex<State>>, State)>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Default for PoolState {
+    fn default() -> Self {
+        Self { last: Arc::new(Mutex::new(State { matrix: None, layout: VertexLayout::CLIP_SPACE.into() })) }
+    }
+}
+
+impl PoolState {
+    /// What the calling thread draws with.
+    pub fn get(&self) -> State {
+        let own = |(pool, state): &(Weak<_>, State)| (Weak::as_ptr(pool) == Arc::as_ptr(&self.last)).then_some(*state);
+        // A thread that ends has none any more.
+        let own = OWN.try_with(|states| states.borrow().iter().find_map(own)).ok().flatten();
+        own.unwrap_or_else(|| *self.last.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Changes what the calling thread draws with.
+    pub fn change(&self, change: impl FnOnce(&mut State)) {
+        let mut state = self.get();
+        change(&mut state);
+        let _ = OWN.try_with(|states| {
+            let mut states = states.borrow_mut();
+            match states.iter_mut().find(|(pool, _)| Weak::as_ptr(pool) == Arc::as_ptr(&self.last)) {
+                Some((_, own)) => *own = state,
+                None => {
+                    states.retain(|(pool, _)| pool.strong_count() > 0);
+                    states.push((Arc::downgrade(&self.last), state));
+                }
+            }
+        });
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state;
+    }
+}
