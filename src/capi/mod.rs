@@ -5,6 +5,13 @@
 //! files, so their doc comments are written for C programmers.
 #![allow(non_camel_case_types, non_snake_case)]
 
+/// The name that a function is exported by: its own, behind the prefix that the build was given (see build.rs).
+macro_rules! symbol {
+    ($name:ident) => {
+        concat!(env!("MOC_SYMBOL_PREFIX"), stringify!($name))
+    };
+}
+
 mod bins;
 mod callbacks;
 mod draw;

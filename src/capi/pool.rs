@@ -82,7 +82,7 @@ unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, 
 ///
 /// # Safety
 /// `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolCreate))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     threads: u32,
     bins_w: u32,
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
 /// last MOC_ThreadpoolFlush can still be read, and the object is still there.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolDestroy))]
 pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC_Status {
     guard(|| {
         if !pool.is_null() {
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC
 ///
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolWakeThreads))]
 pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -145,7 +145,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSuspendThreads))]
 pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolFlush))]
 pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create; until another object is set or
 /// the pool is destroyed it is not destroyed, and it is used through the pool only, or after MOC_ThreadpoolFlush while nobody
 /// calls the pool.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,
     moc: *mut MaskedOcclusionCulling,
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetResolution))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     pool: *const MOC_Threadpool,
     width: u32,
@@ -213,7 +213,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetNearClipPlane))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
@@ -226,7 +226,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadp
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetMatrix))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, model_to_clip: *const f32) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -243,7 +243,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, mo
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetVertexLayout))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
     pool: *const MOC_Threadpool,
     layout: *const MOC_VertexLayout,
@@ -266,7 +266,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolClearBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
@@ -280,7 +280,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) 
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
 /// are until MOC_ThreadpoolFlush.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolRenderTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -305,7 +305,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestRect))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     pool: *const MOC_Threadpool,
     xmin: f32,
@@ -330,7 +330,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -358,7 +358,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolComputePixelDepthBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
     pool: *const MOC_Threadpool,
     out: *mut f32,
@@ -387,7 +387,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
 /// until MOC_ThreadpoolFlush.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolMergeBuffers))]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     pool: *const MOC_Threadpool,
     others: *const *const MaskedOcclusionCulling,
