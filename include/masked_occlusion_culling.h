@@ -92,6 +92,9 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include "moc_names.h"
+
+MOC_NAMESPACE_BEGIN
 
 /**
  * An object that holds settings and a depth buffer; see MOC_Create. In C++ it is the class of
@@ -1482,5 +1485,8 @@ MOC_Status MOC_RecordingGetCall(const struct MOC_Recording *recording,
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+MOC_NAMESPACE_END
+#include "moc_names_end.h"
 
 #endif  /* MASKED_OCCLUSION_CULLING_C_H */
