@@ -29,8 +29,8 @@ fn main() {
     println!("cargo:rustc-env={PREFIX}={}", symbol_prefix());
 }
 
-/// What the exported functions' names begin with, as `MOC_SYMBOL_PREFIX=acme_ cargo build` asks for; nothing by default.
-/// The C and C++ headers want the same as a macro of this name.
+/// What the names of the exported functions begin with: `acme_` with `MOC_SYMBOL_PREFIX=acme_ cargo build`, nothing by
+/// default. The C and C++ headers take the same from a macro of this name.
 fn symbol_prefix() -> String {
     let prefix = match env::var(PREFIX) {
         Err(env::VarError::NotPresent) => String::new(),

@@ -1,22 +1,23 @@
 /*
- * The names of the C functions, for a library that was built with a prefix: one built with MOC_SYMBOL_PREFIX=acme_
- * exports acme_MOC_Create in place of MOC_Create. docs/migrating.md ("Names that collide") says when and how.
+ * The names of the C functions where the library was built with a prefix: with MOC_SYMBOL_PREFIX=acme_ it exports
+ * acme_MOC_Create instead of MOC_Create. docs/migrating.md ("Names that collide") says when and how.
  *
- * The program defines MOC_SYMBOL_PREFIX as acme_, too, on the command line or before the first include. Between this file
- * and moc_names_end.h the name MOC_Create then stands for acme_MOC_Create. All headers begin with the one and end with the
- * other, so that the program may have functions of its own by every name that is listed here. A source file that wants
- * to write MOC_Create for the library's includes this file last. Without MOC_SYMBOL_PREFIX nothing here has an effect.
+ * The program defines MOC_SYMBOL_PREFIX as acme_, too, on the command line or before the first include. From this file
+ * to moc_names_end.h, MOC_Create then stands for acme_MOC_Create. Each header includes the first at its beginning and the
+ * second at its end, so every name listed here is free for the program's own functions. A source file that wants to
+ * call the library as MOC_Create includes this file after the other headers. Without MOC_SYMBOL_PREFIX nothing here
+ * has an effect.
  *
- * No include guard: it is included again by each header. SPDX-License-Identifier: Apache-2.0 OR MIT
+ * No include guard: every header includes it again. SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 
 /*
- * In C++ all that is declared lies in an inline namespace of the prefix. Two copies of the library in one program thus
- * have classes of their own, whose inline methods the linker keeps apart. A declaration ahead reads
+ * In C++ all declarations lie in an inline namespace named after the prefix: the linker merges inline functions of one
+ * name, and would mix the methods of two copies of the library in one program. A forward declaration is written
  *
  *     MOC_NAMESPACE_BEGIN class MaskedOcclusionCulling; MOC_NAMESPACE_END
  *
- * or is the include of masked_occlusion_culling.h.
+ * or replaced by including masked_occlusion_culling.h.
  */
 #ifndef MOC_NAMESPACE_BEGIN
 #ifdef MOC_SYMBOL_PREFIX

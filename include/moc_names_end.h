@@ -1,5 +1,5 @@
 /*
- * Gives the names of the C functions back to the program; see moc_names.h. No include guard.
+ * Undefines what moc_names.h defines, so that the names are free for the program. No include guard.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-// As engines do in their own headers: ahead of the library's headers where there is no prefix, and by the macros
-// of moc_names.h where there is one.
+// Forward declarations as engines write them in their own headers: plain without a prefix, with the macros of moc_names.h
+// where there is one.
 #ifndef MOC_SYMBOL_PREFIX
 class MaskedOcclusionCulling;
 #else
