@@ -1,10 +1,11 @@
-//! Refuses a build whose interface version does not follow the crate's version, and tells the tests which
-//! target the library was built for, so that they compile C and C++ for the same one.
+//! Refuses a build whose interface version does not follow the crate's version, tells the tests which target the library
+//! was built for, so that they compile C and C++ for the same one, and hands on the prefix of the exported names.
 
 use std::env;
 use std::fs;
 
 const DECLARATION: &str = "pub const MOC_ABI_VERSION: u32 = ";
+const PREFIX: &str = "MOC_SYMBOL_PREFIX";
 
 fn main() {
     let source = "src/capi/status.rs";
@@ -23,4 +24,20 @@ fn main() {
     for name in ["TARGET", "HOST"] {
         println!("cargo:rustc-env=MOC_{name}={}", env::var(name).unwrap());
     }
+
+    println!("cargo:rerun-if-env-changed={PREFIX}");
+    println!("cargo:rustc-env={PREFIX}={}", symbol_prefix());
+}
+
+/// What the names of the exported functions begin with: `acme_` with `MOC_SYMBOL_PREFIX=acme_ cargo build`, nothing by
+/// default. The C and C++ headers take the same from a macro of this name.
+fn symbol_prefix() -> String {
+    let prefix = match env::var(PREFIX) {
+        Err(env::VarError::NotPresent) => String::new(),
+        other => other.unwrap_or_else(|e| panic!("{PREFIX}: {e}")),
+    };
+    let is_identifier = !prefix.starts_with(|c: char| c.is_ascii_digit())
+        && prefix.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    assert!(is_identifier, "{PREFIX} is {prefix:?}: a prefix has letters, digits and underscores, and no digit first");
+    prefix
 }

@@ -6,6 +6,7 @@
 #   _moc_import    its import library (Windows)
 #   _moc_soname    the name that programs will look for (not Windows)
 #   _moc_native    the libraries of the system that the archive needs
+#   _moc_definitions  what programs have to define: MOC_SYMBOL_PREFIX, where there is one
 #   _moc_scope     GLOBAL or nothing
 # They hold for every configuration: what cargo built does not depend on whether the program is for debugging.
 # With MSVC Rust always takes the release C runtime, so programs that link the archive need /MD in debug builds, too.
@@ -15,6 +16,7 @@ if(_moc_static)
     set_target_properties(MaskedOcclusionCulling::MaskedOcclusionCulling_static PROPERTIES
         IMPORTED_LOCATION "${_moc_static}"
         INTERFACE_INCLUDE_DIRECTORIES "${_moc_include}"
+        INTERFACE_COMPILE_DEFINITIONS "${_moc_definitions}"
         INTERFACE_LINK_LIBRARIES "${_moc_native}")
 endif()
 
@@ -22,7 +24,8 @@ if(_moc_shared)
     add_library(MaskedOcclusionCulling::MaskedOcclusionCulling_shared SHARED IMPORTED ${_moc_scope})
     set_target_properties(MaskedOcclusionCulling::MaskedOcclusionCulling_shared PROPERTIES
         IMPORTED_LOCATION "${_moc_shared}"
-        INTERFACE_INCLUDE_DIRECTORIES "${_moc_include}")
+        INTERFACE_INCLUDE_DIRECTORIES "${_moc_include}"
+        INTERFACE_COMPILE_DEFINITIONS "${_moc_definitions}")
     if(_moc_import)
         set_property(TARGET MaskedOcclusionCulling::MaskedOcclusionCulling_shared PROPERTY IMPORTED_IMPLIB "${_moc_import}")
     elseif(_moc_soname)

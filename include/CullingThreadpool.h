@@ -45,6 +45,10 @@
 
 #include "MaskedOcclusionCulling.h"
 
+#include "moc_names.h"
+
+MOC_NAMESPACE_BEGIN
+
 class CullingThreadpool
 {
 public:
@@ -226,3 +230,7 @@ public:
 private:
     MOC_Threadpool *mPool = nullptr;
 };
+
+MOC_NAMESPACE_END
+
+#include "moc_names_end.h"

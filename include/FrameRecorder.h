@@ -20,6 +20,10 @@
 
 #include "MaskedOcclusionCulling.h"
 
+#include "moc_names.h"
+
+MOC_NAMESPACE_BEGIN
+
 /** A recorded frame, or several. */
 struct FrameRecording
 {
@@ -125,3 +129,7 @@ private:
         mPlaybackOrder.push_back(std::pair<char, int>(static_cast<char>(call.kind), index));
     }
 };
+
+MOC_NAMESPACE_END
+
+#include "moc_names_end.h"

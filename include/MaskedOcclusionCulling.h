@@ -113,6 +113,10 @@
 #define MOC_DETAIL_SWITCHES \
     (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP | MOC_DETAIL_STATS)
 
+#include "moc_names.h"
+
+MOC_NAMESPACE_BEGIN
+
 /*
  * The instruction sets, as members of the class below. SCALAR and NEON are constants, not enumerators: a program that
  * was written before there were these names all four in a switch, and would be warned of two more. A switch that has
@@ -542,3 +546,7 @@ static_assert(sizeof(MaskedOcclusionCulling::TriList) == sizeof(MOC_TriList) &&
                   offsetof(MaskedOcclusionCulling::TriList, mTriIdx) == offsetof(MOC_TriList, count) &&
                   offsetof(MaskedOcclusionCulling::TriList, mPtr) == offsetof(MOC_TriList, data),
               "a TriList is passed to the C functions as it is");
+
+MOC_NAMESPACE_END
+
+#include "moc_names_end.h"

@@ -11,6 +11,9 @@
 #include "../include/masked_occlusion_culling.h"
 #undef MaskedOcclusionCulling
 
+// To the end of the file that includes this one, MOC_Create stands for what MOC_SYMBOL_PREFIX makes of it.
+#include "../include/moc_names.h"
+
 namespace moc_link
 {
 

@@ -1,6 +1,7 @@
-//! `include/masked_occlusion_culling.h` is what cbindgen makes of `src/capi` now.
-//! `UPDATE_HEADER=1 cargo test --test header` writes it anew.
+//! `include/masked_occlusion_culling.h` is what cbindgen makes of `src/capi` now, and `moc_names.h` and `moc_names_end.h`
+//! list the functions that are exported there. `UPDATE_HEADER=1 cargo test --test header` writes them anew.
 
+use std::fs;
 use std::path::Path;
 
 /// The files that export functions or define their types, in the order of the header.
@@ -18,33 +19,78 @@ const SOURCES: [&str; 11] = [
     "recorder",
 ];
 
+/// What the generated lines lie between, in the lists of names.
+const BEGIN: &str = "/* The functions of src/capi, by `UPDATE_HEADER=1 cargo test --test header`. */\n";
+const END: &str = "/* To here. */\n";
+
+/// The sources of the header, in its order.
+fn sources(root: &Path) -> impl Iterator<Item = (&'static str, String)> {
+    let folder = root.join("src/capi");
+    SOURCES.iter().map(move |&name| {
+        let text = fs::read_to_string(folder.join(name).with_extension("rs")).expect("a source can be read");
+        (name, text)
+    })
+}
+
 fn generate(root: &Path) -> String {
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be read");
-    let builder = SOURCES.iter().fold(cbindgen::Builder::new().with_config(config), |builder, name| {
-        builder.with_src(root.join("src/capi").join(name).with_extension("rs"))
-    });
+    // cbindgen does not see a function whose exported name is a macro's.
+    let plain = tempfile::tempdir().expect("a temporary folder");
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for (name, text) in sources(root) {
+        let line = |line: &str| if exported(line).is_some() { "#[unsafe(no_mangle)]\n" } else { line }.to_string();
+        let path = plain.path().join(name).with_extension("rs");
+        fs::write(&path, text.split_inclusive('\n').map(line).collect::<String>()).expect("a file can be written");
+        builder = builder.with_src(path);
+    }
     let mut header = Vec::new();
     builder.generate().expect("cbindgen understands src/capi").write(&mut header);
     // Rust's heading for what the caller answers for means nothing in C.
     String::from_utf8(header).expect("the header is text").replace(" * # Safety\n", " * Required:\n")
 }
 
-#[test]
-fn the_committed_header_is_current() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = root.join("include/masked_occlusion_culling.h");
-    let made = generate(root);
+/// The name in the attribute that exports a function.
+fn exported(line: &str) -> Option<&str> {
+    line.trim_end().strip_prefix("#[unsafe(export_name = symbol!(")?.strip_suffix("))]")
+}
+
+/// A header with a line between its marks for each exported function.
+fn with_names(root: &Path, path: &Path, line: impl Fn(&str) -> String) -> String {
+    let text = fs::read_to_string(path).expect("the header can be read").replace("\r\n", "\n");
+    let (before, rest) = text.split_once(BEGIN).expect("a mark where the names begin");
+    let (_, after) = rest.split_once(END).expect("a mark where the names end");
+    let lines: String =
+        sources(root).flat_map(|(_, text)| text.lines().filter_map(exported).map(&line).collect::<Vec<_>>()).collect();
+    format!("{before}{BEGIN}{lines}{END}{after}")
+}
+
+fn is_current(path: &Path, made: &str) {
     if std::env::var_os("UPDATE_HEADER").is_some_and(|v| v == "1") {
-        std::fs::write(&path, &made).expect("the header can be written");
+        fs::write(path, made).expect("the header can be written");
     }
-    let committed = std::fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
+    let committed = fs::read_to_string(path).unwrap_or_default().replace("\r\n", "\n");
     let differs = committed.lines().zip(made.lines()).position(|(a, b)| a != b);
     assert!(
         committed == made,
-        "include/masked_occlusion_culling.h is stale (first difference in line {}): \
-         run `UPDATE_HEADER=1 cargo test --test header` and commit it",
+        "{} is stale (first difference in line {}): run `UPDATE_HEADER=1 cargo test --test header` and commit it",
+        path.display(),
         differs.map_or(committed.lines().count().min(made.lines().count()), |i| i) + 1
     );
+}
+
+#[test]
+fn the_committed_header_is_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    is_current(&root.join("include/masked_occlusion_culling.h"), &generate(root));
+}
+
+#[test]
+fn the_lists_of_names_are_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (begin, end) = (root.join("include/moc_names.h"), root.join("include/moc_names_end.h"));
+    let define = |name: &str| format!("#define {name} MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, {name})\n");
+    is_current(&begin, &with_names(root, &begin, define));
+    is_current(&end, &with_names(root, &end, |name| format!("#undef {name}\n")));
 }
 
 /// Every function says what the caller answers for, and every one that can refuse says how.
@@ -66,17 +112,24 @@ fn no_function_is_without_its_paragraphs() {
 }
 
 #[test]
-fn every_source_with_exports_is_in_the_header() {
+fn every_export_is_in_the_header_by_its_own_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let header = generate(root);
     let mut exports = 0;
-    for entry in std::fs::read_dir(root.join("src/capi")).expect("src/capi") {
-        let text = std::fs::read_to_string(entry.expect("an entry").path()).expect("a source");
-        for line in text.lines().filter(|l| l.starts_with("pub") && l.contains("extern \"C\" fn ")) {
+    for entry in fs::read_dir(root.join("src/capi")).expect("src/capi") {
+        let text = fs::read_to_string(entry.expect("an entry").path()).expect("a source");
+        let mut attribute = None;
+        for line in text.lines() {
+            attribute = exported(line).or(attribute);
+            if !(line.starts_with("pub") && line.contains("extern \"C\" fn ")) {
+                continue;
+            }
             let name = line.split("fn ").nth(1).and_then(|rest| rest.split('(').next()).expect("a name");
+            assert_eq!(attribute.take(), Some(name), "{name} needs #[unsafe(export_name = symbol!({name}))]");
             assert!(header.contains(&format!("{name}(")), "{name} is not in the header");
             exports += 1;
         }
+        assert_eq!(attribute, None, "the attribute is of no function");
     }
     assert!(exports > 20, "only {exports} exported functions found");
 }

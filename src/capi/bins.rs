@@ -29,7 +29,7 @@ struct BinArguments {
 /// As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
 /// written for `bins_w` times `bins_h` lists, and the `data` of each for 9 * `capacity` floats; nobody else uses
 /// them meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_BinTriangles))]
 pub unsafe extern "C" fn MOC_BinTriangles(
     moc: *const MaskedOcclusionCulling,
     vertices: *const f32,
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn MOC_BinTriangles(
 ///
 /// # Safety
 /// As MOC_BinTriangles, where `vertices` can be read for `vertex_floats` floats, whatever the indices.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_BinTrianglesChecked))]
 pub unsafe extern "C" fn MOC_BinTrianglesChecked(
     moc: *const MaskedOcclusionCulling,
     vertices: *const f32,

@@ -17,7 +17,7 @@ use crate::MaskedOcclusionCulling;
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free` are null
 /// or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetAllocFreeCallback))]
 pub unsafe extern "C" fn MOC_GetAllocFreeCallback(
     moc: *const MaskedOcclusionCulling,
     alloc: *mut MOC_AlignedAlloc,

@@ -12,7 +12,7 @@ use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ClearBuffer))]
 pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { object_mut(moc) }?.clear_buffer())
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MO
 /// # Safety
 /// Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
 /// changes `other`.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_MergeBuffer))]
 pub unsafe extern "C" fn MOC_MergeBuffer(
     moc: *mut MaskedOcclusionCulling,
     other: *const MaskedOcclusionCulling,
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
 /// # Safety
 /// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
 /// thread uses `moc` meanwhile, and none changes the others.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_MergeBuffers))]
 pub unsafe extern "C" fn MOC_MergeBuffers(
     moc: *mut MaskedOcclusionCulling,
     others: *const *const MaskedOcclusionCulling,
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 /// matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
 /// whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
 /// y at 4 and w (or z) at 8 or 12. MOC_RenderTrianglesChecked is for indices that are not known to be right.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RenderTriangles))]
 pub unsafe extern "C" fn MOC_RenderTriangles(
     moc: *mut MaskedOcclusionCulling,
     vertices: *const f32,
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn MOC_RenderTriangles(
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `vertices` can be
 /// read for `vertex_floats` floats, and so can the indices, the matrix and the layout.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RenderTrianglesChecked))]
 pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
     moc: *mut MaskedOcclusionCulling,
     vertices: *const f32,
@@ -184,7 +184,7 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: 
 /// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
 /// rectangle of it, and none queries, merges, clears or resizes it. `list` can be read, its `data` for
 /// 9 * `count` floats.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RenderTrilist))]
 pub unsafe extern "C" fn MOC_RenderTrilist(
     moc: *const MaskedOcclusionCulling,
     list: *const MOC_TriList,

@@ -30,7 +30,7 @@ fn object_layout() -> Result<Layout, Error> {
 ///
 /// # Safety
 /// `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_DefaultSettings))]
 pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Status {
     guard(|| {
         check_out(out)?;
@@ -50,7 +50,7 @@ pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Stat
 /// # Safety
 /// `settings` is null or can be read, `out` is null or can be written. The callbacks do what
 /// MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_Create))]
 pub unsafe extern "C" fn MOC_Create(
     settings: *const MOC_Settings,
     out: *mut *mut MaskedOcclusionCulling,
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn MOC_Create(
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_Destroy))]
 pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
     guard(|| {
         let Some(place) = core::ptr::NonNull::new(moc) else { return Ok(()) };
@@ -119,7 +119,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_SetResolution))]
 pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, width: u32, height: u32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { object_mut(moc) }?.set_resolution(width, height))
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, wid
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `width`
 /// and `height` are null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetResolution))]
 pub unsafe extern "C" fn MOC_GetResolution(
     moc: *const MaskedOcclusionCulling,
     width: *mut u32,
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn MOC_GetResolution(
 ///
 /// # Safety
 /// As MOC_GetResolution.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ComputeBinWidthHeight))]
 pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
     moc: *const MaskedOcclusionCulling,
     bins_w: u32,
@@ -180,7 +180,7 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_SetNearClipPlane))]
 pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, near_w: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { object_mut(moc) }?.set_near_clip_plane(near_w))
@@ -193,7 +193,7 @@ pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, 
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
 /// null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetNearClipPlane))]
 pub unsafe extern "C" fn MOC_GetNearClipPlane(moc: *const MaskedOcclusionCulling, out: *mut f32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { get(moc, out, MaskedOcclusionCulling::near_clip_plane) })
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn MOC_GetNearClipPlane(moc: *const MaskedOcclusionCulling
 ///
 /// # Safety
 /// As MOC_GetNearClipPlane.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetImplementation))]
 pub unsafe extern "C" fn MOC_GetImplementation(moc: *const MaskedOcclusionCulling, out: *mut i32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { get(moc, out, |m| m.implementation() as i32) })
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn MOC_GetImplementation(moc: *const MaskedOcclusionCullin
 ///
 /// # Safety
 /// As MOC_GetNearClipPlane.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetUpdateRule))]
 pub unsafe extern "C" fn MOC_GetUpdateRule(moc: *const MaskedOcclusionCulling, out: *mut i32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { get(moc, out, |m| m.update_rule() as i32) })
@@ -245,7 +245,7 @@ unsafe fn get<T: Copy>(
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_Flush))]
 pub unsafe extern "C" fn MOC_Flush(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.

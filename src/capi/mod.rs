@@ -5,6 +5,13 @@
 //! files, so their doc comments are written for C programmers.
 #![allow(non_camel_case_types, non_snake_case)]
 
+/// The name under which a function is exported: the prefix of this build, which build.rs hands on, and its own name.
+macro_rules! symbol {
+    ($name:ident) => {
+        concat!(env!("MOC_SYMBOL_PREFIX"), stringify!($name))
+    };
+}
+
 mod bins;
 mod callbacks;
 mod draw;

@@ -131,7 +131,7 @@ impl MOC_ThreadpoolSettings {
 ///
 /// # Safety
 /// `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolCreate))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     threads: u32,
     bins_w: u32,
@@ -154,7 +154,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 /// # Safety
 /// `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
 /// `user` by any thread. `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolCreateFrom))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
     settings: *const MOC_ThreadpoolSettings,
     out: *mut *mut MOC_Threadpool,
@@ -192,7 +192,7 @@ unsafe fn create(
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
 /// last MOC_ThreadpoolFlush can still be read.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolDestroy))]
 pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC_Status {
     guard(|| {
         if !pool.is_null() {
@@ -209,7 +209,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC
 ///
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolWakeThreads))]
 pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSuspendThreads))]
 pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -241,7 +241,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolFlush))]
 pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `worked` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolWorkOnce))]
 pub unsafe extern "C" fn MOC_ThreadpoolWorkOnce(pool: *const MOC_Threadpool, worked: *mut i32) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -278,7 +278,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolWorkOnce(pool: *const MOC_Threadpool, wor
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `done` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolIsDone))]
 pub unsafe extern "C" fn MOC_ThreadpoolIsDone(pool: *const MOC_Threadpool, done: *mut i32) -> MOC_Status {
     guard(|| {
         check_out(done)?;
@@ -294,7 +294,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolIsDone(pool: *const MOC_Threadpool, done:
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `threads` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolGetThreads))]
 pub unsafe extern "C" fn MOC_ThreadpoolGetThreads(pool: *const MOC_Threadpool, threads: *mut u32) -> MOC_Status {
     guard(|| {
         check_out(threads)?;
@@ -310,7 +310,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetThreads(pool: *const MOC_Threadpool, t
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `bins_w` and `bins_h` are null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolGetBins))]
 pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
     pool: *const MOC_Threadpool,
     bins_w: *mut u32,
@@ -333,7 +333,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 /// # Safety
 /// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; nobody uses it or the
 /// object that the pool had meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,
     moc: *mut MaskedOcclusionCulling,
@@ -348,7 +348,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetResolution))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     pool: *const MOC_Threadpool,
     width: u32,
@@ -364,7 +364,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetNearClipPlane))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))

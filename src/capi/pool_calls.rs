@@ -72,7 +72,7 @@ impl MOC_Threadpool {
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `model_to_clip` is null or can be read for 16 floats.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetMatrix))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, model_to_clip: *const f32) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, mo
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `layout` is null or can be read.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolSetVertexLayout))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
     pool: *const MOC_Threadpool,
     layout: *const MOC_VertexLayout,
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolClearBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) 
 ///
 /// # Safety
 /// As MOC_ThreadpoolRenderMesh.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolRenderTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -153,7 +153,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
 /// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
 /// are until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
 /// `model_to_clip` and `layout` are null or can be read.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMesh))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
 ///
 /// # Safety
 /// As MOC_ThreadpoolRenderMesh, where `vertices` can be read for `vertex_floats` floats whatever the indices are.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMeshChecked))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestMesh))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestMesh(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -249,7 +249,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestMesh(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_TestTrianglesChecked. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestMeshChecked))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestMeshChecked(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -282,7 +282,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestMeshChecked(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestRect))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     pool: *const MOC_Threadpool,
     xmin: f32,
@@ -307,7 +307,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolTestTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     pool: *const MOC_Threadpool,
     vertices: *const f32,
@@ -335,7 +335,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_ComputePixelDepthBuffer.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolComputePixelDepthBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
     pool: *const MOC_Threadpool,
     out: *mut f32,
@@ -364,7 +364,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
 /// until MOC_ThreadpoolFlush.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ThreadpoolMergeBuffers))]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     pool: *const MOC_Threadpool,
     others: *const *const MaskedOcclusionCulling,

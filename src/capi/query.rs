@@ -24,7 +24,7 @@ use crate::{Error, MaskedOcclusionCulling};
 /// # Safety
 /// As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
 /// query `moc` meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_TestTriangles))]
 pub unsafe extern "C" fn MOC_TestTriangles(
     moc: *const MaskedOcclusionCulling,
     vertices: *const f32,
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn MOC_TestTriangles(
 ///
 /// # Safety
 /// As MOC_RenderTrianglesChecked, but other threads may query `moc` meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_TestTrianglesChecked))]
 pub unsafe extern "C" fn MOC_TestTrianglesChecked(
     moc: *const MaskedOcclusionCulling,
     vertices: *const f32,
@@ -116,7 +116,7 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: 
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `result` is
 /// null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_TestRect))]
 pub unsafe extern "C" fn MOC_TestRect(
     moc: *const MaskedOcclusionCulling,
     xmin: f32,
@@ -145,7 +145,7 @@ pub unsafe extern "C" fn MOC_TestRect(
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
 /// null or can be written for width times height floats.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ComputePixelDepthBuffer))]
 pub unsafe extern "C" fn MOC_ComputePixelDepthBuffer(
     moc: *const MaskedOcclusionCulling,
     out: *mut f32,
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn MOC_ComputePixelDepthBuffer(
 ///
 /// # Safety
 /// As MOC_ComputePixelDepthBuffer, where `out` can be written for `out_floats` floats.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_ComputePixelDepthBufferChecked))]
 pub unsafe extern "C" fn MOC_ComputePixelDepthBufferChecked(
     moc: *const MaskedOcclusionCulling,
     out: *mut f32,
@@ -200,7 +200,7 @@ unsafe fn depth(
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
 /// written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetStatistics))]
 pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, out: *mut MOC_Statistics) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.

@@ -82,7 +82,7 @@ pub struct MOC_RecordedCall {
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
 /// a zero.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecorderStart))]
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { Ok(object(moc)?.recorder_start(self::path(path)?)?) })
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecorderStop))]
 pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { Ok(object(moc)?.recorder_stop()?) })
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) ->
 ///
 /// # Safety
 /// That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordRenderTriangles))]
 pub unsafe extern "C" fn MOC_RecordRenderTriangles(
     moc: *const MaskedOcclusionCulling,
     vertices: *const f32,
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
 ///
 /// # Safety
 /// `path` is null or ends with a zero, `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordingLoad))]
 pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut MOC_Recording) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?)?)) })
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut M
 ///
 /// # Safety
 /// `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordingFromMemory))]
 pub unsafe extern "C" fn MOC_RecordingFromMemory(
     bytes: *const u8,
     size: usize,
@@ -181,7 +181,7 @@ pub unsafe extern "C" fn MOC_RecordingFromMemory(
 ///
 /// # Safety
 /// `recording` is null or from MOC_RecordingLoad or MOC_RecordingFromMemory, and not destroyed.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordingDestroy))]
 pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> MOC_Status {
     guard(|| {
         if !recording.is_null() {
@@ -198,7 +198,7 @@ pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> 
 ///
 /// # Safety
 /// `recording` is null or a live one, `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordingGetInfo))]
 pub unsafe extern "C" fn MOC_RecordingGetInfo(
     recording: *const MOC_Recording,
     out: *mut MOC_RecordingInfo,
@@ -226,7 +226,7 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
 ///
 /// # Safety
 /// `recording` is null or a live one, `out` is null or can be written.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_RecordingGetCall))]
 pub unsafe extern "C" fn MOC_RecordingGetCall(
     recording: *const MOC_Recording,
     index: u32,

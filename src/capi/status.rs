@@ -94,13 +94,13 @@ const TEXTS: [&CStr; 15] = [
 ];
 
 /// The MOC_ABI_VERSION that the library was built with.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_GetAbiVersion))]
 pub extern "C" fn MOC_GetAbiVersion() -> u32 {
     MOC_ABI_VERSION
 }
 
 /// A status in English, for logs. Never null; the text lives as long as the library is loaded.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_StatusText))]
 pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
     let text = usize::try_from(status).ok().and_then(|i| TEXTS.get(i));
     text.map_or(c"not a status of this library", |t| t).as_ptr()

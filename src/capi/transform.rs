@@ -19,7 +19,7 @@ use crate::{Error, VertexLayout};
 /// # Safety
 /// `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
 /// 4 * `n_vertices` floats, and does not overlap the vertices.
-#[unsafe(no_mangle)]
+#[unsafe(export_name = symbol!(MOC_TransformVertices))]
 pub unsafe extern "C" fn MOC_TransformVertices(
     matrix: *const f32,
     vertices: *const f32,

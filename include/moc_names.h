@@ -1,0 +1,94 @@
+/*
+ * The names of the C functions where the library was built with a prefix: with MOC_SYMBOL_PREFIX=acme_ it exports
+ * acme_MOC_Create instead of MOC_Create. docs/migrating.md ("Names that collide") says when and how.
+ *
+ * The program defines MOC_SYMBOL_PREFIX as acme_, too, on the command line or before the first include. From this file
+ * to moc_names_end.h, MOC_Create then stands for acme_MOC_Create. Each header includes the first at its beginning and the
+ * second at its end, so every name listed here is free for the program's own functions. A source file that wants to
+ * call the library as MOC_Create includes this file after the other headers. Without MOC_SYMBOL_PREFIX nothing here
+ * has an effect.
+ *
+ * No include guard: every header includes it again. SPDX-License-Identifier: Apache-2.0 OR MIT
+ */
+
+/*
+ * In C++ all declarations lie in an inline namespace named after the prefix: the linker merges inline functions of one
+ * name, and would mix the methods of two copies of the library in one program. A forward declaration is written
+ *
+ *     MOC_NAMESPACE_BEGIN class MaskedOcclusionCulling; MOC_NAMESPACE_END
+ *
+ * or replaced by including masked_occlusion_culling.h.
+ */
+#ifndef MOC_NAMESPACE_BEGIN
+#ifdef MOC_SYMBOL_PREFIX
+#define MOC_DETAIL_JOIN_TOKENS(prefix, name) prefix##name
+#define MOC_DETAIL_JOIN(prefix, name) MOC_DETAIL_JOIN_TOKENS(prefix, name)
+#endif
+#if defined(MOC_SYMBOL_PREFIX) && defined(__cplusplus)
+#define MOC_NAMESPACE_BEGIN inline namespace MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_Names) {
+#define MOC_NAMESPACE_END }
+#else
+#define MOC_NAMESPACE_BEGIN
+#define MOC_NAMESPACE_END
+#endif
+#endif
+
+#ifdef MOC_SYMBOL_PREFIX
+#ifndef MOC_DETAIL_JOIN
+#error "MOC_SYMBOL_PREFIX has to be defined before the first header of the library is included"
+#endif
+/* The functions of src/capi, by `UPDATE_HEADER=1 cargo test --test header`. */
+#define MOC_GetAbiVersion MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetAbiVersion)
+#define MOC_StatusText MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_StatusText)
+#define MOC_DefaultSettings MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_DefaultSettings)
+#define MOC_Create MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_Create)
+#define MOC_Destroy MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_Destroy)
+#define MOC_SetResolution MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_SetResolution)
+#define MOC_GetResolution MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetResolution)
+#define MOC_ComputeBinWidthHeight MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ComputeBinWidthHeight)
+#define MOC_SetNearClipPlane MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_SetNearClipPlane)
+#define MOC_GetNearClipPlane MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetNearClipPlane)
+#define MOC_GetImplementation MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetImplementation)
+#define MOC_GetUpdateRule MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetUpdateRule)
+#define MOC_GetAllocFreeCallback MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetAllocFreeCallback)
+#define MOC_ClearBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ClearBuffer)
+#define MOC_MergeBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_MergeBuffer)
+#define MOC_MergeBuffers MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_MergeBuffers)
+#define MOC_RenderTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RenderTriangles)
+#define MOC_RenderTrianglesChecked MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RenderTrianglesChecked)
+#define MOC_RenderTrilist MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RenderTrilist)
+#define MOC_TestTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_TestTriangles)
+#define MOC_TestTrianglesChecked MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_TestTrianglesChecked)
+#define MOC_TestRect MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_TestRect)
+#define MOC_ComputePixelDepthBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ComputePixelDepthBuffer)
+#define MOC_ComputePixelDepthBufferChecked MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ComputePixelDepthBufferChecked)
+#define MOC_GetStatistics MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetStatistics)
+#define MOC_BinTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_BinTriangles)
+#define MOC_BinTrianglesChecked MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_BinTrianglesChecked)
+#define MOC_TransformVertices MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_TransformVertices)
+#define MOC_ThreadpoolCreate MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolCreate)
+#define MOC_ThreadpoolDestroy MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolDestroy)
+#define MOC_ThreadpoolWakeThreads MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolWakeThreads)
+#define MOC_ThreadpoolSuspendThreads MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSuspendThreads)
+#define MOC_ThreadpoolFlush MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolFlush)
+#define MOC_ThreadpoolSetBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSetBuffer)
+#define MOC_ThreadpoolSetResolution MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSetResolution)
+#define MOC_ThreadpoolSetNearClipPlane MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSetNearClipPlane)
+#define MOC_ThreadpoolSetMatrix MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSetMatrix)
+#define MOC_ThreadpoolSetVertexLayout MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolSetVertexLayout)
+#define MOC_ThreadpoolClearBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolClearBuffer)
+#define MOC_ThreadpoolRenderTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolRenderTriangles)
+#define MOC_ThreadpoolTestRect MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolTestRect)
+#define MOC_ThreadpoolTestTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolTestTriangles)
+#define MOC_ThreadpoolComputePixelDepthBuffer MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolComputePixelDepthBuffer)
+#define MOC_ThreadpoolMergeBuffers MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_ThreadpoolMergeBuffers)
+#define MOC_RecorderStart MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecorderStart)
+#define MOC_RecorderStop MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecorderStop)
+#define MOC_RecordRenderTriangles MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordRenderTriangles)
+#define MOC_RecordingLoad MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordingLoad)
+#define MOC_RecordingFromMemory MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordingFromMemory)
+#define MOC_RecordingDestroy MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordingDestroy)
+#define MOC_RecordingGetInfo MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordingGetInfo)
+#define MOC_RecordingGetCall MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_RecordingGetCall)
+/* To here. */
+#endif
