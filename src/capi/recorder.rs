@@ -255,7 +255,7 @@ unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Error> {
     let path = std::os::unix::ffi::OsStrExt::from_bytes(path.to_bytes());
     #[cfg(not(unix))]
     let path = path.to_str().map_err(|_| Error::File)?;
-    Ok(Path::new::<std::ffi::OsStr>(path))
+    Ok(Path::new(path))
 }
 
 /// # Safety
