@@ -133,6 +133,18 @@ fn the_instruction_set_is_capped_by_the_argument() {
         }
         assert_eq!(Implementation::Sse2.capped(), Implementation::Sse2);
     }
+    // One that belongs to another architecture permits all: a program for x86-64 asks for AVX-512 everywhere.
+    use Implementation::*;
+    let foreign: &[Implementation] = match std::env::consts::ARCH {
+        "x86_64" => &[Neon, Simd128],
+        "aarch64" => &[Sse2, Sse41, Avx2, Avx512, Simd128],
+        "wasm32" => &[Sse2, Sse41, Avx2, Avx512, Neon],
+        _ => &[],
+    };
+    for &cap in foreign {
+        assert_eq!(cap.capped(), *all.last().unwrap(), "{cap:?}");
+    }
+    assert_eq!(Scalar.capped(), Scalar);
 }
 
 #[test]

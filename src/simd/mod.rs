@@ -23,6 +23,8 @@ mod scalar;
 mod sse;
 #[cfg(test)]
 mod tests;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -334,6 +336,8 @@ pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
         Implementation::Sse2 => sse::enter_sse2(job),
         #[cfg(target_arch = "aarch64")]
         Implementation::Neon => neon::enter(job),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Implementation::Simd128 => wasm::enter(job),
         _ => scalar::enter(job),
     }
 }
@@ -395,7 +399,12 @@ pub(crate) fn available() -> &'static [Implementation] {
     {
         &[Scalar, Neon]
     }
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(target_arch = "wasm32")]
+    {
+        // A module either has simd128 throughout or not at all.
+        if cfg!(target_feature = "simd128") { &[Scalar, Simd128] } else { &[Scalar] }
+    }
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
     {
         &[Scalar]
     }
