@@ -1,5 +1,8 @@
 //! How many threads a pool starts.
 
+// There are no threads in WebAssembly.
+#![cfg(not(target_family = "wasm"))]
+
 use super::{CullingThreadpool, MAX_THREADS};
 
 #[test]
