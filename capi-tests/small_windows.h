@@ -1,4 +1,4 @@
-/* windows.h without what programs seldom need, and without min and max, which are names of C++. */
+/* windows.h without what programs seldom need, and without its macros for names that others use. */
 #ifndef CAPI_TESTS_SMALL_WINDOWS_H
 #define CAPI_TESTS_SMALL_WINDOWS_H
 
@@ -9,5 +9,7 @@
 #define NOMINMAX
 #endif
 #include <windows.h>
+#undef near
+#undef far
 
 #endif
