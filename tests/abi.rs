@@ -139,10 +139,11 @@ fn the_header_says_the_same() {
                 .expect("a string");
         }
     }
-    for (compiler, file) in [("cc", "abi.c"), ("c++", "abi.cpp")] {
+    for (cpp, file) in [(false, "abi.c"), (true, "abi.cpp")] {
         let file = folder.path().join(file);
         std::fs::write(&file, &source).expect("a file");
-        let mut command = Command::new(compiler);
+        let mut build = native::target().compiler(cpp, folder.path());
+        let mut command = build.opt_level(0).debug(false).get_compiler().to_command();
         command.arg("-fsyntax-only").arg("-I").arg(native::root().join("include")).arg(&file);
         let output = command.output().expect("a compiler");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
