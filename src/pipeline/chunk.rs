@@ -123,8 +123,8 @@ pub(super) unsafe fn project<S: Simd>(
         chunk = &chunk[..3 * count];
         (least, largest) = index_range(s, chunk, None);
     }
-    let vertices = (largest - least) as usize + 1;
-    if vertices <= CHUNK_VERTICES && dense(least, largest, count) {
+    if ((largest - least) as usize) < CHUNK_VERTICES && dense(least, largest, count) {
+        let vertices = (largest - least) as usize + 1;
         // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
         unsafe { reader.dense(camera, least, vertices, scratch) };
         let (stride, numbering) = (reader.stride(), Numbering::From(least));

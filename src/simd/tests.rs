@@ -1,6 +1,6 @@
 //! Every operation on every instruction set against the scalar one, bit by bit.
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::with_sixteen_lanes;
 use super::{Job, Simd, available, run};
 use crate::Implementation;
@@ -215,7 +215,7 @@ fn every_instruction_set_agrees_with_scalar() {
             let same = expected == got;
             assert!(same, "{implementation:?}, round {round}:\n{expected:x?}\n{got:x?}");
         }
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if available().contains(&Implementation::Avx2) {
             let got = with_sixteen_lanes(|| run(Implementation::Avx2, AllOperations(input)));
             assert!(expected == got, "two vectors of AVX2, round {round}:\n{expected:x?}\n{got:x?}");
