@@ -24,6 +24,12 @@ mod sse;
 #[cfg(test)]
 mod tests;
 
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!(
+    "without SSE2 floats are rounded as the x87 unit does, and the same bits everywhere cannot be promised: \
+    build for i686, not for i586"
+);
+
 #[cfg(target_arch = "x86")]
 use core::arch::x86 as arch;
 #[cfg(target_arch = "x86_64")]
