@@ -1,6 +1,7 @@
 /* 32-bit programs may leave the x87 unit at single precision, as Direct3D 9 does to those that do not ask it not to. The
  * library has to draw the same bits: it computes in SSE registers, and what passes through the x87 unit is exact there.
  * Small triangles, clipped ones, and triangles so large that integers of 128 bits decide. */
+#define _DEFAULT_SOURCE 1
 #include "guarded_object.h"
 
 #include <fpu_control.h>
