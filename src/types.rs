@@ -7,7 +7,7 @@
 pub enum Implementation {
     /// No vector instructions by name: runs anywhere.
     Scalar = -1,
-    /// x86-64 baseline.
+    /// SSE2, the baseline of x86-64 and i686.
     Sse2 = 0,
     /// SSE4.1 (with SSSE3's byte shuffle).
     Sse41 = 1,

@@ -121,6 +121,15 @@ programs! {
     threads_static: THREADS, Library::Static;
 }
 
+/// Only programs of 32 bits compute in the x87 unit.
+#[test]
+#[cfg(target_arch = "x86")]
+fn precision_control() {
+    const PROGRAM: Program = Program { name: "precision_control", sources: &["precision_control.c"], cpp: false };
+    run(&PROGRAM, Library::Shared);
+    run(&PROGRAM, Library::Static);
+}
+
 #[test]
 fn exact_arrays_under_sanitizers() {
     under_sanitizers(&EXACT_ARRAYS);

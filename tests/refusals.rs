@@ -126,7 +126,7 @@ fn the_instruction_set_is_capped_by_the_argument() {
         assert_eq!(moc.implementation(), implementation);
     }
     assert_eq!(MaskedOcclusionCulling::default().implementation(), *all.last().unwrap());
-    if cfg!(target_arch = "x86_64") {
+    if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
         for cap in [Implementation::Sse2, Implementation::Sse41, Implementation::Avx2, Implementation::Avx512] {
             let got = cap.capped();
             assert!(all.contains(&got) && got as i32 <= cap as i32, "{cap:?} gives {got:?}");

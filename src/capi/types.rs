@@ -12,7 +12,7 @@ use crate::{
 pub enum MOC_Implementation {
     /// No vector instructions by name: runs anywhere.
     MOC_SCALAR = -1,
-    /// x86-64 baseline.
+    /// SSE2, the baseline of x86-64 and i686.
     MOC_SSE2 = 0,
     /// SSE4.1 (with SSSE3's byte shuffle).
     MOC_SSE41 = 1,

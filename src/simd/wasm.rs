@@ -8,7 +8,7 @@ use core::arch::wasm32::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Simd128(());
@@ -133,10 +133,11 @@ impl Simd for Simd128 {
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> v128 {
         // SAFETY: the caller's contract: four floats; loads need no alignment.
         unsafe {
-            let v = v128_load32_zero(p.cast());
-            let v = v128_load32_lane::<1>(v, p.add(stride).cast());
-            let v = v128_load32_lane::<2>(v, p.add(2 * stride).cast());
-            v128_load32_lane::<3>(v, p.add(3 * stride).cast())
+            let at = |k: usize| strided(p, k, stride).cast::<u32>();
+            let v = v128_load32_zero(at(0));
+            let v = v128_load32_lane::<1>(v, at(1));
+            let v = v128_load32_lane::<2>(v, at(2));
+            v128_load32_lane::<3>(v, at(3))
         }
     }
     #[inline(always)]
