@@ -408,7 +408,7 @@ static void callbacks(void)
 
 int main(void)
 {
-    const int32_t implementations[] = {MOC_SCALAR, MOC_SSE2, MOC_SSE41, MOC_AVX2, MOC_AVX512, MOC_NEON};
+    const int32_t implementations[] = {MOC_SCALAR, MOC_SSE2, MOC_SSE41, MOC_AVX2, MOC_AVX512, MOC_NEON, MOC_SIMD128};
     int32_t rule;
     size_t i;
     versions();

@@ -1,5 +1,6 @@
 /* Arrays that end where they have to, in guarded memory: nothing outside of them is read or written. */
 #define _DEFAULT_SOURCE 1
+#include "deadline.h"
 #include "guarded_object.h"
 
 /* Arrays that end, to the byte, where they have to: nothing outside is read or written. */
@@ -87,7 +88,7 @@ static void exact_arrays(int32_t implementation)
 int main(void)
 {
     int i;
-    alarm(500); /* a call that hangs is a failure too */
+    deadline(500);
     for (i = 0; i < N_IMPLEMENTATIONS; i++)
         exact_arrays(IMPLEMENTATIONS[i]);
     CHECK_EQ(guarded_live_blocks(), 0);

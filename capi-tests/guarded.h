@@ -7,21 +7,73 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef _WIN32
+#include "small_windows.h"
+#else
 #include <sys/mman.h>
 #include <unistd.h>
+#endif
+
+/* The unit of protection. */
+static inline size_t guarded_page(void)
+{
+#ifdef _WIN32
+    SYSTEM_INFO info;
+    GetSystemInfo(&info);
+    return info.dwPageSize;
+#else
+    return (size_t)sysconf(_SC_PAGESIZE);
+#endif
+}
+
+/* Whole pages that can be read and written; null where there are none. */
+static inline unsigned char *guarded_map(size_t size)
+{
+#ifdef _WIN32
+    return (unsigned char *)VirtualAlloc(NULL, size, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);
+#else
+    void *pages = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return pages == MAP_FAILED ? NULL : (unsigned char *)pages;
+#endif
+}
+
+/* From now on it is a crash to read or write this page. */
+static inline void guarded_forbid(unsigned char *page, size_t size)
+{
+#ifdef _WIN32
+    DWORD before;
+    if (!VirtualProtect(page, size, PAGE_NOACCESS, &before))
+        abort();
+#else
+    if (mprotect(page, size, PROT_NONE) != 0)
+        abort();
+#endif
+}
+
+static inline void guarded_unmap(unsigned char *pages, size_t size)
+{
+#ifdef _WIN32
+    (void)size;
+    if (!VirtualFree(pages, 0, MEM_RELEASE))
+        abort();
+#else
+    if (munmap(pages, size) != 0)
+        abort();
+#endif
+}
 
 /* size bytes that end right before a forbidden page, at a multiple of alignment when size is one. */
 static inline void *guarded_alloc(size_t alignment, size_t size)
 {
-    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t page = guarded_page();
     const size_t middle = (size + page - 1) / page * page + page;
-    unsigned char *base = (unsigned char *)mmap(NULL, middle + 2 * page, PROT_READ | PROT_WRITE,
-                                                MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    unsigned char *base = guarded_map(middle + 2 * page);
     (void)alignment;
-    if (base == (unsigned char *)MAP_FAILED)
+    if (base == NULL)
         return NULL;
-    if (mprotect(base + page + middle, page, PROT_NONE) != 0 || mprotect(base, page, PROT_NONE) != 0)
-        abort();
+    guarded_forbid(base + page + middle, page);
+    guarded_forbid(base, page);
     /* What lies before the block in its own pages is filled, and checked when it is released. */
     memset(base + page, 0xa5, middle - size);
     return base + page + middle - size;
@@ -30,7 +82,7 @@ static inline void *guarded_alloc(size_t alignment, size_t size)
 /* Says when a byte before the block was written. */
 static inline int guarded_intact(const void *block)
 {
-    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t page = guarded_page();
     const unsigned char *p = (const unsigned char *)block;
     const unsigned char *start = (const unsigned char *)((uintptr_t)p / page * page);
     const unsigned char *c;
@@ -43,15 +95,14 @@ static inline int guarded_intact(const void *block)
 /* Takes back a block of `size` bytes. */
 static inline void guarded_release(void *block, size_t size)
 {
-    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t page = guarded_page();
     const size_t middle = (size + page - 1) / page * page + page;
     unsigned char *base = (unsigned char *)block + size - middle - page;
     if (!guarded_intact(block)) {
         fprintf(stderr, "memory before a block was written\n");
         abort();
     }
-    if (munmap(base, middle + 2 * page) != 0)
-        abort();
+    guarded_unmap(base, middle + 2 * page);
 }
 
 /* The pair of callbacks for an object: the sizes of live blocks are kept in a table. */

@@ -1,6 +1,7 @@
 /* What no caller should do: null pointers, wrong integers, NaN and infinities. Every call has to come back with
  * the status that the header promises, and memory stays whole. */
 #define _DEFAULT_SOURCE 1
+#include "deadline.h"
 #include "guarded_object.h"
 
 #include <float.h>
@@ -224,6 +225,52 @@ static void wrong_integers(void)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
+/* Where pointers have 32 bits: counts of arrays that are larger than any array. They are refused before anything is read. */
+static void larger_than_memory(void)
+{
+#if UINTPTR_MAX <= 0xffffffffu
+    const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const int32_t counts[] = {0x0aaaaaab, 0x15555556, 0x20000000, 0x40000000, 0x55555556, INT_MAX};
+    const uint32_t lengths[] = {0x08000000, 0x10000000, 0x1c71c71d, 0x20000000, 0x40000000, 0x80000000u, UINT32_MAX};
+    MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER);
+    float quad[16], storage[9 * 4], out[16];
+    MOC_TriList list = {4, 0, NULL};
+    int32_t r;
+    size_t i;
+    list.data = storage;
+    quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
+#define IS_TOO_LARGE(call) CHECK_EQ(call, MOC_STATUS_INVALID_SIZE)
+    for (i = 0; i < sizeof counts / sizeof *counts; i++) {
+        if (counts[i] > 0x0aaaaaaa) {
+            IS_TOO_LARGE(MOC_RenderTriangles(moc, quad, QUAD, counts[i], REST));
+            IS_TOO_LARGE(MOC_RenderTrianglesChecked(moc, quad, 16, QUAD, counts[i], REST));
+            IS_TOO_LARGE(MOC_TestTriangles(moc, quad, QUAD, counts[i], REST));
+            IS_TOO_LARGE(MOC_TestTrianglesChecked(moc, quad, 16, QUAD, counts[i], REST));
+            IS_TOO_LARGE(MOC_BinTriangles(moc, quad, QUAD, counts[i], &list, 1, 1, REST));
+            IS_TOO_LARGE(MOC_BinTrianglesChecked(moc, quad, 16, QUAD, counts[i], &list, 1, 1, REST));
+        }
+    }
+    for (i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        IS_TOO_LARGE(MOC_TransformVertices(matrix, quad, out, lengths[i], NULL));
+        list.capacity = list.count = lengths[i];
+        IS_TOO_LARGE(MOC_RenderTrilist(moc, &list, NULL));
+        list.count = 0;
+        IS_TOO_LARGE(MOC_BinTriangles(moc, quad, QUAD, 2, &list, 1, 1, REST));
+        CHECK_EQ(list.count, 0);
+        if (lengths[i] >= 0x20000000) {
+            const MaskedOcclusionCulling *others[1] = {moc};
+            IS_TOO_LARGE(MOC_MergeBuffers(moc, others, lengths[i]));
+        }
+    }
+    {
+        MOC_Recording *recording = NULL;
+        IS_TOO_LARGE(MOC_RecordingFromMemory((const uint8_t *)quad, 0x80000000u, &recording));
+    }
+    still_works(moc);
+    CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
+#endif
+}
+
 /* Calls on an object whose resolution was never set. */
 static void no_buffer(void)
 {
@@ -262,11 +309,12 @@ static void layouts(void)
     const MOC_VertexLayout negative = {-16, 4, 12}, zero = {0, 4, 12}, wide = {INT_MAX, 4, 12}, back = {16, 4, -12};
     MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER);
     const uint32_t first[3] = {0, 0, 0};
-    unsigned char bytes[256], list_bytes[64];
+    uint64_t words[32], list_words[8]; /* aligned, so that what lies a byte further is not */
+    unsigned char *const bytes = (unsigned char *)words, *const list_bytes = (unsigned char *)list_words;
     float quad[16], out[16];
     int32_t r;
-    memset(bytes, 0, sizeof bytes);
-    memset(list_bytes, 0, sizeof list_bytes);
+    memset(words, 0, sizeof words);
+    memset(list_words, 0, sizeof list_words);
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
 #define ANY NULL, MOC_BACKFACE_NONE, MOC_CLIP_PLANE_ALL
     CHECK_EQ(MOC_RenderTriangles(moc, quad, (uint32_t *)(void *)(bytes + 1), 2, REST), MOC_STATUS_INVALID_LAYOUT);
@@ -396,9 +444,10 @@ static void strange_numbers(int32_t implementation, int32_t rule)
 int main(void)
 {
     int i;
-    alarm(500); /* a call that hangs is a failure too */
+    deadline(500);
     null_pointers();
     wrong_integers();
+    larger_than_memory();
     no_buffer();
     layouts();
     for (i = 0; i < N_IMPLEMENTATIONS; i++) {

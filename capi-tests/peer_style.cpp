@@ -274,7 +274,8 @@ void Allocators()
 
 void Implementations()
 {
-    const MOC::Implementation asked[] = {MOC::SCALAR, MOC::SSE2, MOC::SSE41, MOC::AVX2, MOC::AVX512, MOC::NEON};
+    const MOC::Implementation asked[] = {MOC::SCALAR, MOC::SSE2, MOC::SSE41, MOC::AVX2, MOC::AVX512,
+                                         MOC::NEON,   MOC::SIMD128};
     for (MOC::Implementation implementation : asked) {
         MOC *moc = MOC::Create(implementation);
         const MOC::Implementation got = moc->GetImplementation();

@@ -9,6 +9,10 @@
 
 #include <string>
 
+#ifdef _WIN32
+#include "small_windows.h"
+#endif
+
 namespace
 {
 
@@ -214,6 +218,79 @@ void Refused()
     }
 }
 
+// The name that the system has for a file: UTF-8 on Windows, whose own names are UTF-16, bytes elsewhere.
+#ifdef _WIN32
+std::wstring Wide(const char *name)
+{
+    wchar_t wide[64];
+    const int length = MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, name, -1, wide, 64);
+    CHECK(length > 0);
+    return length > 0 ? std::wstring(wide) : std::wstring();
+}
+
+bool Exists(const char *name) { return GetFileAttributesW(Wide(name).c_str()) != INVALID_FILE_ATTRIBUTES; }
+bool Remove(const char *name) { return DeleteFileW(Wide(name).c_str()) != 0; }
+#else
+bool Exists(const char *name)
+{
+    FILE *file = fopen(name, "rb");
+    return file != nullptr && fclose(file) == 0;
+}
+bool Remove(const char *name) { return remove(name) == 0; }
+#endif
+
+// Names that no code page has all of: characters of two, three and four bytes, and a folder of them.
+void NamesBeyondAscii()
+{
+    MOC *moc = MOC::Create();
+    moc->SetResolution(64, 32);
+    for (const char *name : {"\xc3\xa4\xc3\xb6\xc3\xbc.mocrec", "\xe6\x97\xa5\xe6\x9c\xac \xd0\x96.mocrec",
+                             "\xf0\x9f\x98\x80\xf0\x9f\xa6\x80.mocrec"})
+    {
+        CHECK(!Exists(name));
+        CHECK(moc->RecorderStart(name));
+        moc->ClearBuffer();
+        CHECK_EQ(MOC_RecorderStop(moc), MOC_STATUS_OK);
+        CHECK(Exists(name));
+        FrameRecording recording;
+        CHECK(FrameRecording::Load(name, recording));
+        CHECK_EQ(recording.mPlaybackOrder.size(), 1);
+        CHECK(Remove(name));
+        CHECK(!Exists(name));
+        CHECK(!FrameRecording::Load(name, recording));
+    }
+
+    // Not UTF-8: a stray byte, a character that is cut, half of a surrogate pair. They name files elsewhere, but not on Windows.
+    for (const char *name : {"\xff.mocrec", "\xe6\x97", "\xed\xa0\x80.mocrec"})
+    {
+        MOC_Recording *recording = nullptr;
+#ifdef _WIN32
+        CHECK_EQ(MOC_RecorderStart(moc, name), MOC_STATUS_FILE);
+        CHECK_EQ(MOC_RecordingLoad(name, &recording), MOC_STATUS_FILE);
+        CHECK(recording == nullptr);
+#else
+        const MOC_Status status = MOC_RecorderStart(moc, name);
+#ifdef __linux__
+        CHECK_EQ(status, MOC_STATUS_OK);
+#endif
+        // Other systems may refuse such names.
+        if (status == MOC_STATUS_OK)
+        {
+            moc->ClearBuffer();
+            CHECK_EQ(MOC_RecorderStop(moc), MOC_STATUS_OK);
+            CHECK(Exists(name));
+            CHECK_EQ(MOC_RecordingLoad(name, &recording), MOC_STATUS_OK);
+            CHECK_EQ(MOC_RecordingDestroy(recording), MOC_STATUS_OK);
+            CHECK(Remove(name));
+        }
+#endif
+    }
+    // The object records as before.
+    CHECK(moc->RecorderStart(FILE_NAME));
+    moc->RecorderStop();
+    MOC::Destroy(moc);
+}
+
 } // namespace
 
 int main()
@@ -221,6 +298,7 @@ int main()
     RecordAndPlay();
     RecordAPool();
     Refused();
+    NamesBeyondAscii();
     remove(FILE_NAME);
     return check_report("recorder");
 }

@@ -60,11 +60,12 @@ const char *Name(MOC::BackfaceWinding winding)
 void Enumerations(MOC *moc)
 {
     // Those that were added are of the type, and can be referred to, before C++17 too.
-    const MOC::Implementation &scalar = MOC::SCALAR, &neon = MOC::NEON;
+    const MOC::Implementation &scalar = MOC::SCALAR, &neon = MOC::NEON, &simd128 = MOC::SIMD128;
     CHECK_EQ(scalar, MOC_SCALAR);
     CHECK_EQ(neon, MOC_NEON);
+    CHECK_EQ(simd128, MOC_SIMD128);
     const MOC::Implementation is = moc->GetImplementation();
-    CHECK(is == MOC::SCALAR || is == MOC::NEON || strcmp(Name(is), "something newer") != 0);
+    CHECK(is == MOC::SCALAR || is == MOC::NEON || is == MOC::SIMD128 || strcmp(Name(is), "something newer") != 0);
     CHECK(strcmp(Name(MOC::VIEW_CULLED), "out of view") == 0 && strcmp(Name(MOC::BACKFACE_CW), "clockwise") == 0);
 }
 

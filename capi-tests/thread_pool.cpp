@@ -2,10 +2,9 @@
 // resizes when, and no call that hangs. These are defects 12 (columns and rows lost where the size is not a multiple of
 // the tile) and 13 (races, lost work, hangs) of the library that ours stands in for.
 #include "check.h"
+#include "deadline.h"
 
 #include "CullingThreadpool.h"
-
-#include <unistd.h>
 
 #include <atomic>
 #include <limits>
@@ -673,7 +672,7 @@ void Refused()
 
 int main()
 {
-    alarm(120); // a call that hangs is a failure too
+    deadline(120);
     SameAsOneThread();
     SmallJobs();
     Destroyed();

@@ -167,6 +167,7 @@ static const char *Name(int implementation) {
         case Moc::AVX2: return "AVX2";
         case Moc::AVX512: return "AVX-512";
         case Moc::NEON: return "NEON";
+        case Moc::SIMD128: return "simd128";
         default: return "no vector instructions";
     }
 }

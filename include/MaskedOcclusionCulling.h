@@ -118,8 +118,8 @@
 MOC_NAMESPACE_BEGIN
 
 /*
- * The instruction sets, as members of the class below. SCALAR and NEON are constants, not enumerators: a program that
- * was written before there were these names all four in a switch, and would be warned of two more. A switch that has
+ * The instruction sets, as members of the class below. SCALAR, NEON and SIMD128 are constants, not enumerators: a program that
+ * was written before there were these names all four in a switch, and would be warned of the others. A switch that has
  * them needs a variable of type int. The template is for their definitions, which C++11 wants in one place.
  */
 template <class Unused> struct MOC_DetailImplementations
@@ -132,8 +132,9 @@ template <class Unused> struct MOC_DetailImplementations
         AVX2   = MOC_AVX2,
         AVX512 = MOC_AVX512
     };
-    static constexpr Implementation SCALAR = static_cast<Implementation>(MOC_SCALAR);
-    static constexpr Implementation NEON   = static_cast<Implementation>(MOC_NEON);
+    static constexpr Implementation SCALAR  = static_cast<Implementation>(MOC_SCALAR);
+    static constexpr Implementation NEON    = static_cast<Implementation>(MOC_NEON);
+    static constexpr Implementation SIMD128 = static_cast<Implementation>(MOC_SIMD128);
 };
 
 #if __cplusplus < 201703L
@@ -141,6 +142,8 @@ template <class Unused>
 constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::SCALAR;
 template <class Unused>
 constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::NEON;
+template <class Unused>
+constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::SIMD128;
 #endif
 
 /** A masked hierarchical depth buffer to draw occluders into and to test occludees against. */

@@ -236,6 +236,10 @@ enum MOC_Implementation
      * aarch64's Advanced SIMD.
      */
     MOC_NEON = 16,
+    /**
+     * WebAssembly's 128-bit vectors, in a module that is compiled for them.
+     */
+    MOC_SIMD128 = 17,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

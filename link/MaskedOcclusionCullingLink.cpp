@@ -20,7 +20,7 @@
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * USE_D3D, PRECISE_COVERAGE, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them.
  *
- * GetImplementation answers SSE2 for what that header has no name for: scalar code, and NEON.
+ * GetImplementation answers SSE2 for what that header has no name for: scalar code, NEON and simd128.
  *
  * C++11; nothing here throws or needs run-time type information.
  *

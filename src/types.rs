@@ -7,7 +7,7 @@
 pub enum Implementation {
     /// No vector instructions by name: runs anywhere.
     Scalar = -1,
-    /// x86-64 baseline.
+    /// SSE2, the baseline of x86-64 and i686.
     Sse2 = 0,
     /// SSE4.1 (with SSSE3's byte shuffle).
     Sse41 = 1,
@@ -17,6 +17,8 @@ pub enum Implementation {
     Avx512 = 3,
     /// aarch64's Advanced SIMD.
     Neon = 16,
+    /// WebAssembly's 128-bit vectors, in a module that is compiled for them.
+    Simd128 = 17,
 }
 
 impl Implementation {
@@ -32,10 +34,22 @@ impl Implementation {
         if self == Implementation::Scalar {
             return self;
         }
-        if !all.contains(&self) && (self == Implementation::Neon) != cfg!(target_arch = "aarch64") {
+        if !self.is_of_this_architecture() {
             return *all.last().unwrap_or(&Implementation::Scalar);
         }
         *all.iter().rfind(|i| **i as i32 <= self as i32).unwrap_or(&Implementation::Scalar)
+    }
+
+    /// Is it of the architecture that the library is compiled for? (Whether this processor has it is another question.)
+    fn is_of_this_architecture(self) -> bool {
+        match self {
+            Implementation::Scalar => true,
+            Implementation::Sse2 | Implementation::Sse41 | Implementation::Avx2 | Implementation::Avx512 => {
+                cfg!(any(target_arch = "x86_64", target_arch = "x86"))
+            }
+            Implementation::Neon => cfg!(target_arch = "aarch64"),
+            Implementation::Simd128 => cfg!(target_arch = "wasm32"),
+        }
     }
 }
 

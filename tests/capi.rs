@@ -40,18 +40,8 @@ const POOL_CONTRACT: Program = Program { name: "pool_contract", sources: &["pool
 const POOL_THREADS: Program = Program { name: "pool_threads", sources: &["pool_threads.cpp"], cpp: true };
 const THREAD_POOL_C: Program = Program { name: "thread_pool_c", sources: &["thread_pool_c.c"], cpp: false };
 
-/// The compiler that the `cc` crate finds for the target that the library was built for.
 fn compiler(cpp: bool, folder: &Path) -> Command {
-    cc::Build::new()
-        .cpp(cpp)
-        .target(env!("MOC_TARGET"))
-        .host(env!("MOC_HOST"))
-        .opt_level(0)
-        .debug(true)
-        .cargo_metadata(false)
-        .out_dir(folder)
-        .get_compiler()
-        .to_command()
+    native::target().compiler(cpp, folder).opt_level(0).debug(true).get_compiler().to_command()
 }
 
 fn succeed(what: &str, output: &Output) {
@@ -69,26 +59,16 @@ fn build(program: &Program, library: Library, flags: &[&str], folder: &Path) -> 
     if !flags.is_empty() && !links_an_empty_program(flags, folder) {
         return None;
     }
-    let executable = folder.join(program.name);
+    let target = native::target();
+    let executable = folder.join(program.name).with_extension(target.executable_extension());
     let mut command = compiler(program.cpp, folder);
     command.arg(if program.cpp { "-std=c++11" } else { "-std=c99" }).args(STRICT).args(flags);
     command.arg("-I").arg(native::root().join("include"));
     command.args(program.sources.iter().map(|source| native::root().join("capi-tests").join(source)));
     command.arg("-o").arg(&executable);
     match library {
-        Library::Shared => {
-            let path = native::shared_library();
-            let folder = path.parent().expect("a library lies in a folder").display().to_string();
-            command.arg(&path).arg(format!("-Wl,-rpath,{folder}"));
-        }
-        Library::Static => {
-            command.arg(native::static_library());
-        }
-    }
-    // What Rust's standard library needs of the system (`rustc --print native-static-libs`).
-    command.args(["-lpthread", "-lm"]);
-    if cfg!(target_os = "linux") {
-        command.args(["-lgcc_s", "-ldl", "-lrt", "-lutil"]);
+        Library::Shared => target.link(&mut command, &native::shared_library(), true),
+        Library::Static => target.link(&mut command, &native::static_library(), false),
     }
     succeed(&format!("compiling {}", program.name), &command.output().expect("a C compiler"));
     Some(executable)
@@ -105,7 +85,7 @@ fn links_an_empty_program(flags: &[&str], folder: &Path) -> bool {
 fn run(program: &Program, library: Library) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let executable = build(program, library, &[], folder.path()).expect("no flags to refuse");
-    let output = Command::new(executable).current_dir(folder.path()).output().expect("the program starts");
+    let output = native::target().command(executable).current_dir(folder.path()).output().expect("the program starts");
     succeed(&format!("{} with the {library:?} library", program.name), &output);
 }
 
@@ -145,6 +125,15 @@ programs! {
     thread_pool_c_static: THREAD_POOL_C, Library::Static;
     threads_shared: THREADS, Library::Shared;
     threads_static: THREADS, Library::Static;
+}
+
+/// Only programs of 32 bits compute in the x87 unit.
+#[test]
+#[cfg(target_arch = "x86")]
+fn precision_control() {
+    const PROGRAM: Program = Program { name: "precision_control", sources: &["precision_control.c"], cpp: false };
+    run(&PROGRAM, Library::Shared);
+    run(&PROGRAM, Library::Static);
 }
 
 #[test]
@@ -188,6 +177,10 @@ fn thread_pool_c_under_sanitizers() {
 }
 
 fn under_sanitizers(program: &Program) {
+    if native::target().is_windows() {
+        println!("skipped: gcc has no sanitizers for Windows");
+        return;
+    }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let flags = [SANITIZERS, "-fno-sanitize-recover=all"];
     let Some(executable) = build(program, Library::Static, &flags, folder.path()) else {
@@ -237,6 +230,32 @@ fn headers_compile_without_warnings() {
         }
     }
     assert!(compiled > 0, "no compiler was found");
+}
+
+/// The header of Windows defines `min`, `max`, `near` and more as macros.
+#[test]
+fn headers_compile_beside_that_of_windows() {
+    if !native::target().is_windows() {
+        println!("skipped: not for Windows");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("headers.cpp");
+    let headers = ["masked_occlusion_culling.h", "MaskedOcclusionCulling.h", "CullingThreadpool.h", "FrameRecorder.h"];
+    for header in headers {
+        for text in [
+            format!("#include <windows.h>\n#include \"{header}\"\n"),
+            format!("#include \"{header}\"\n#include <windows.h>\n"),
+        ] {
+            std::fs::write(&file, text).expect("a file");
+            for standard in ["c++11", "c++20"] {
+                let mut command = compiler(true, folder.path());
+                command.arg(format!("-std={standard}")).args(STRICT).args(["-DMOC_RECORDER_ENABLE=1", "-fsyntax-only"]);
+                command.arg("-I").arg(native::root().join("include")).arg(&file);
+                succeed(&format!("{header}: {command:?}"), &command.output().expect("a compiler"));
+            }
+        }
+    }
 }
 
 /// Each header with every switch the one way and the other, and the programs that `.ci/install-ways` installs.

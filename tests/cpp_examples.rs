@@ -4,7 +4,6 @@
 mod native;
 
 use std::path::Path;
-use std::process::Command;
 
 use native::{Link, Program};
 
@@ -13,13 +12,13 @@ fn outputs(source: &str) -> [String; 2] {
     [Link::Static, Link::Shared].map(|link| {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let program = compile(source, link, &[], folder.path());
-        native::run(&mut Command::new(program)).unwrap_or_else(|e| panic!("{source}, {link:?}: {e}"))
+        native::run(&mut native::target().command(program)).unwrap_or_else(|e| panic!("{source}, {link:?}: {e}"))
     })
 }
 
 fn compile(source: &str, link: Link, defines: &[(&str, &str)], out: &Path) -> std::path::PathBuf {
     let source = native::root().join("cpp-examples").join(source);
-    let flags = [if cfg!(target_env = "msvc") { "/WX" } else { "-Werror" }];
+    let flags = [if native::target().is_msvc() { "/WX" } else { "-Werror" }];
     native::build(&Program { source: &source, out, link, defines, flags: &flags }).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -115,7 +114,7 @@ fn the_frame_in_the_header() {
     std::fs::write(&source, code[..=end].join("\n") + "\n").expect("the program is written");
     for link in [Link::Static, Link::Shared] {
         let program = compile(&source.display().to_string(), link, &[], folder.path());
-        let output = native::run(&mut Command::new(program)).unwrap_or_else(|e| panic!("{link:?}: {e}"));
+        let output = native::run(&mut native::target().command(program)).unwrap_or_else(|e| panic!("{link:?}: {e}"));
         assert_eq!(output.trim(), "hidden", "{output}");
     }
 }
@@ -152,7 +151,8 @@ fn demo_culls_what_is_behind() {
     std::fs::write(&scene, &bytes).expect("the scene is written");
     for rule in [&[][..], &[("QUICK_MASK", "1")], &[("QUICK_MASK", "0")], &[("MOC_FOUR_LAYERS", "1")]] {
         let program = compile("demo.cpp", Link::Static, rule, folder.path());
-        let output = native::run(Command::new(program).arg(&scene).arg(&result)).unwrap_or_else(|e| panic!("{e}"));
+        let output =
+            native::run(native::target().command(program).arg(&scene).arg(&result)).unwrap_or_else(|e| panic!("{e}"));
         assert!(output.contains("33.3% of those in view"), "{output}");
         let found = std::fs::read(&result).expect("the result is written");
         assert_eq!(found[..5], [0, 1, 0, 3, 3], "{rule:?}");
@@ -165,6 +165,7 @@ fn demo_culls_what_is_behind() {
     // A file that is cut short is refused.
     std::fs::write(&scene, &bytes[..200]).expect("the scene is written");
     let program = compile("demo.cpp", Link::Static, &[], folder.path());
-    let error = native::run(Command::new(program).arg(&scene).arg(&result)).expect_err("a cut scene is accepted");
+    let error =
+        native::run(native::target().command(program).arg(&scene).arg(&result)).expect_err("a cut scene is accepted");
     assert!(error.contains("cut short"), "{error}");
 }

@@ -126,13 +126,25 @@ fn the_instruction_set_is_capped_by_the_argument() {
         assert_eq!(moc.implementation(), implementation);
     }
     assert_eq!(MaskedOcclusionCulling::default().implementation(), *all.last().unwrap());
-    if cfg!(target_arch = "x86_64") {
+    if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
         for cap in [Implementation::Sse2, Implementation::Sse41, Implementation::Avx2, Implementation::Avx512] {
             let got = cap.capped();
             assert!(all.contains(&got) && got as i32 <= cap as i32, "{cap:?} gives {got:?}");
         }
         assert_eq!(Implementation::Sse2.capped(), Implementation::Sse2);
     }
+    // One that belongs to another architecture permits all: a program for x86-64 asks for AVX-512 everywhere.
+    use Implementation::*;
+    let foreign: &[Implementation] = match std::env::consts::ARCH {
+        "x86_64" => &[Neon, Simd128],
+        "aarch64" => &[Sse2, Sse41, Avx2, Avx512, Simd128],
+        "wasm32" => &[Sse2, Sse41, Avx2, Avx512, Neon],
+        _ => &[],
+    };
+    for &cap in foreign {
+        assert_eq!(cap.capped(), *all.last().unwrap(), "{cap:?}");
+    }
+    assert_eq!(Scalar.capped(), Scalar);
 }
 
 #[test]

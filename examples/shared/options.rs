@@ -21,6 +21,7 @@ pub enum Isa {
     Avx2 = 2,
     Avx512 = 3,
     Neon = 16,
+    Simd128 = 17,
 }
 
 impl From<Rule> for UpdateRule {
@@ -43,6 +44,7 @@ impl From<Isa> for Implementation {
             Isa::Avx2 => Self::Avx2,
             Isa::Avx512 => Self::Avx512,
             Isa::Neon => Self::Neon,
+            Isa::Simd128 => Self::Simd128,
         }
     }
 }

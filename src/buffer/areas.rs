@@ -181,7 +181,7 @@ mod tests {
         for &implementation in simd::available() {
             check(&format!("{implementation:?}"), |job| simd::run(implementation, job));
         }
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if simd::available().contains(&crate::Implementation::Avx2) {
             check("sixteen lanes", |job| {
                 simd::with_sixteen_lanes(|| simd::run(crate::Implementation::Avx2, job));

@@ -1,9 +1,10 @@
 //! Sorting triangles into the lists of bins.
 
 use super::mesh::MeshArguments;
-use super::pointers::{object, slice_mut};
+use super::pointers::{check_length, object, slice_mut};
 use super::status::{MOC_Status, guard_result};
 use super::types::{MOC_TriList, MOC_VertexLayout};
+use crate::bins::FLOATS_PER_TRIANGLE;
 use crate::{Error, MaskedOcclusionCulling, TriList};
 
 /// The lists of the bins, in C's form.
@@ -23,7 +24,8 @@ struct BinArguments {
 ///
 /// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
 /// a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
-/// alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
+/// alignment; MOC_STATUS_INVALID_SIZE also for a capacity above what memory holds: nothing is binned.
+/// MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
 ///
 /// # Safety
 /// As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -120,6 +122,7 @@ unsafe fn bin(
         if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
             return Err(Error::NullPointer);
         }
+        lists.iter().try_for_each(|list| check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.capacity as usize))?;
         // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
         unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }
     };

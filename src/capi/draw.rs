@@ -1,9 +1,10 @@
 //! What changes the buffer: clearing, merging, drawing triangles and lists.
 
 use super::mesh::MeshArguments;
-use super::pointers::{object, object_mut, objects, read};
+use super::pointers::{check_length, object, object_mut, objects, read};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
+use crate::bins::FLOATS_PER_TRIANGLE;
 use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
 
 /// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
@@ -83,9 +84,9 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 ///
 /// Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count,
-/// MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that are not at a multiple of 4 bytes,
-/// MOC_STATUS_NO_BUFFER.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
+/// or, with pointers of 32 bits, more indices than memory holds, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
+/// that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -178,7 +179,7 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: 
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
 /// MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
-/// its `capacity`; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
+/// its `capacity` or what memory holds; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -204,6 +205,7 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
         if list.len > 0 && list.data.is_null() {
             return Err(Error::NullPointer);
         }
+        check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.len as usize)?;
         // SAFETY: the caller's contract.
         let scissor = unsafe { read(scissor) }.map(ScissorRect::from);
         // SAFETY: the caller's contract: exclusive inside of the rectangle.

@@ -67,6 +67,11 @@ fn check_array<T>(data: *const T, len: usize) -> Result<(), Error> {
     if !data.is_aligned() {
         return Err(Error::InvalidLayout);
     }
+    check_length::<T>(len)
+}
+
+/// Refuses more elements than an array can have: pointers of 32 bits end before the counts of C.
+pub(super) fn check_length<T>(len: usize) -> Result<(), Error> {
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
         _ => Err(Error::InvalidSize),

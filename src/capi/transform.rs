@@ -1,6 +1,6 @@
 //! Transforming vertices to clip space.
 
-use super::pointers::read;
+use super::pointers::{check_length, read};
 use super::status::{MOC_Status, guard};
 use super::types::MOC_VertexLayout;
 use crate::vertices::VertexSource;
@@ -14,7 +14,7 @@ use crate::{Error, VertexLayout};
 /// bytes a vertex), its last offset names z. All pointers may lie at any address.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
-/// MOC_STATUS_INVALID_LAYOUT for a negative stride.
+/// MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory holds.
 ///
 /// # Safety
 /// `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
@@ -41,6 +41,7 @@ pub unsafe extern "C" fn MOC_TransformVertices(
         if vertices.is_null() || out.is_null() {
             return Err(Error::NullPointer);
         }
+        check_length::<[f32; 4]>(n_vertices as usize)?;
         let source = VertexSource { base: vertices.cast(), layout };
         // SAFETY: the caller's contract: so many vertices can be read and written.
         unsafe {

@@ -12,7 +12,7 @@ use crate::{
 pub enum MOC_Implementation {
     /// No vector instructions by name: runs anywhere.
     MOC_SCALAR = -1,
-    /// x86-64 baseline.
+    /// SSE2, the baseline of x86-64 and i686.
     MOC_SSE2 = 0,
     /// SSE4.1 (with SSSE3's byte shuffle).
     MOC_SSE41 = 1,
@@ -22,6 +22,8 @@ pub enum MOC_Implementation {
     MOC_AVX512 = 3,
     /// aarch64's Advanced SIMD.
     MOC_NEON = 16,
+    /// WebAssembly's 128-bit vectors, in a module that is compiled for them.
+    MOC_SIMD128 = 17,
 }
 
 /// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
@@ -268,6 +270,7 @@ const _: () = {
     assert!(MOC_Implementation::MOC_AVX2 as i32 == Implementation::Avx2 as i32);
     assert!(MOC_Implementation::MOC_AVX512 as i32 == Implementation::Avx512 as i32);
     assert!(MOC_Implementation::MOC_NEON as i32 == Implementation::Neon as i32);
+    assert!(MOC_Implementation::MOC_SIMD128 as i32 == Implementation::Simd128 as i32);
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32 == UpdateRule::ThreeLayer as i32);
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_QUICK as i32 == UpdateRule::Quick as i32);
     assert!(MOC_UpdateRule::MOC_UPDATE_RULE_ACCURATE as i32 == UpdateRule::Accurate as i32);
@@ -297,6 +300,7 @@ pub(super) fn implementation(value: i32) -> Result<Implementation, Error> {
         2 => Implementation::Avx2,
         3 => Implementation::Avx512,
         16 => Implementation::Neon,
+        17 => Implementation::Simd128,
         _ => return Err(Error::InvalidEnum),
     })
 }

@@ -123,8 +123,8 @@ pub(super) unsafe fn project<S: Simd>(
         chunk = &chunk[..3 * count];
         (least, largest) = index_range(s, chunk, None);
     }
-    let vertices = (largest - least) as usize + 1;
-    if vertices <= CHUNK_VERTICES && dense(least, largest, count) {
+    if ((largest - least) as usize) < CHUNK_VERTICES && dense(least, largest, count) {
+        let vertices = (largest - least) as usize + 1;
         // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
         unsafe { reader.dense(camera, least, vertices, scratch) };
         let (stride, numbering) = (reader.stride(), Numbering::From(least));
@@ -152,7 +152,7 @@ mod tests {
     use crate::pipeline::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES};
     use crate::simd::available;
     use crate::vertices::VertexSource;
-    use crate::{CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, VertexLayout};
+    use crate::{BackfaceWinding, CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, VertexLayout};
 
     #[test]
     fn what_is_asked_for_ahead_has_an_end() {
@@ -179,6 +179,81 @@ mod tests {
             // SAFETY: with a stride of 0 every index names the one vertex.
             let result = unsafe { culling.render_triangles_unchecked(vertices, &triangles, &DrawOptions::default()) };
             assert_eq!(result.unwrap(), CullingResult::ViewCulled);
+        }
+    }
+
+    #[test]
+    fn the_first_and_the_last_of_all_indices_in_one_triangle() {
+        let vertex = [0.0_f32, 0.0, 0.0, 1.0];
+        for &implementation in available() {
+            let settings = Settings { implementation, ..Settings::default() };
+            let mut culling = MaskedOcclusionCulling::new(settings);
+            culling.set_resolution(64, 64).unwrap();
+            let vertices = VertexSource { base: vertex.as_ptr().cast(), layout: VertexLayout::new(0, 4, 12) };
+            let triangles = [0, u32::MAX, u32::MAX / 2];
+            // SAFETY: with a stride of 0 every index names the one vertex.
+            let result = unsafe { culling.render_triangles_unchecked(vertices, &triangles, &DrawOptions::default()) };
+            assert_eq!(result.unwrap(), CullingResult::ViewCulled);
+        }
+    }
+
+    /// A mesh may begin with any index, and its base lie as far before what is read: further than pointers of 32 bits count.
+    #[test]
+    fn a_base_far_before_the_first_vertex_changes_nothing() {
+        let (width, height) = (200, 120);
+        let grid = 40_u32;
+        for (layout, floats) in [
+            (VertexLayout::CLIP_SPACE, 4),
+            (VertexLayout::new(12, 4, 8), 3),
+            (VertexLayout::new(20, 8, 16), 5),
+            (VertexLayout::new(20, 8, -4), 5),
+        ] {
+            // The first float is room for the negative offset.
+            let mut data = vec![0.0_f32];
+            let mut indices = Vec::new();
+            for k in 0..grid * grid {
+                let w = 2.0 + (k % 7) as f32 * 0.1;
+                let mut vertex = vec![0.0; floats];
+                vertex[0] = ((k % grid) as f32 / (grid - 1) as f32 * 1.8 - 0.9) * w;
+                vertex[layout.offset_y as usize / 4] = ((k / grid) as f32 / (grid - 1) as f32 * 1.8 - 0.9) * w;
+                if layout.offset_zw > 0 {
+                    vertex[layout.offset_zw as usize / 4] = w;
+                } else {
+                    *data.last_mut().unwrap() = w;
+                }
+                data.extend(vertex);
+                if k % grid + 1 < grid && k / grid + 1 < grid {
+                    indices.extend([k, k + 1, k + grid + 1, k, k + grid + 1, k + grid]);
+                }
+            }
+            // All of it, and triangles that are strewn and too few for a vector.
+            let strewn: Vec<u32> = indices.chunks(3).step_by(211).flatten().copied().collect();
+            let few: Vec<u32> = indices[..9].to_vec();
+            for (triangles, &implementation) in
+                [&indices, &strewn, &few].into_iter().flat_map(|t| available().iter().map(move |i| (t, i)))
+            {
+                let depth = |first: u32| {
+                    let settings = Settings { implementation, ..Settings::default() };
+                    let mut culling = MaskedOcclusionCulling::new(settings);
+                    culling.set_resolution(width, height).unwrap();
+                    let before = (first as usize).wrapping_mul(layout.stride as usize);
+                    let base = data[1..].as_ptr().cast::<u8>().wrapping_sub(before);
+                    let triangles: Vec<u32> = triangles.iter().map(|k| k + first).collect();
+                    let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+                    // SAFETY: the indices name the vertices of the array.
+                    let result = unsafe {
+                        culling.render_triangles_unchecked(VertexSource { base, layout }, &triangles, &options)
+                    };
+                    assert_eq!(result.unwrap(), CullingResult::Visible);
+                    let mut depth = vec![0.0; (width * height) as usize];
+                    culling.compute_pixel_depth_buffer(&mut depth, false).unwrap();
+                    depth
+                };
+                let expected = depth(0);
+                for first in [1 << 28, 1 << 30, u32::MAX - grid * grid] {
+                    assert!(depth(first) == expected, "{implementation:?} {layout:?} {first}");
+                }
+            }
         }
     }
 }

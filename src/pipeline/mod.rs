@@ -32,7 +32,7 @@ mod scratch;
 mod setup;
 mod strips;
 mod survivors;
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
 mod tests;
 mod tile_step;
 mod traverse;

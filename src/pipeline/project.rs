@@ -182,8 +182,9 @@ impl<S: Simd> Reader<S> {
     /// Address of x of a vertex.
     #[inline(always)]
     pub fn at(&self, index: u32) -> *const u8 {
-        // The stride is not negative, and the vertex is there: the product does not overflow.
-        self.source.base.wrapping_add(index as usize * self.stride())
+        // The stride is not negative. With pointers of 32 bits the product may overflow: the caller's base may have
+        // wrapped around, too, if the mesh does not name its first vertices.
+        self.source.base.wrapping_add((index as usize).wrapping_mul(self.stride()))
     }
 
     /// Vertices `first` to `first + LANES` in clip space. `whole`: another vertex follows them, or all of a stride

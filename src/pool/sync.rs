@@ -26,6 +26,10 @@ impl Glance {
 
     /// Waits until the count is another one, but only a moment.
     pub fn wait(&self, count: u64) {
+        if cfg!(all(target_family = "wasm", target_os = "unknown")) {
+            // There is no clock, and asking for the time panics.
+            return;
+        }
         let begin = Instant::now();
         while self.count() == count && begin.elapsed() < GLANCE {
             for _ in 0..32 {

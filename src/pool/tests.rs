@@ -1,5 +1,8 @@
 //! How many threads a pool starts, and what happens when its scheduler breaks.
 
+// There are no threads in WebAssembly, and no processes.
+#![cfg(not(target_family = "wasm"))]
+
 use std::process::Command;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;

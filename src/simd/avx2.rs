@@ -1,9 +1,8 @@
 //! AVX2: eight lanes. Masks are vectors of all ones or all zeros; a `D` is two registers of four.
 
-use core::arch::x86_64::*;
-
+use super::arch::*;
 use super::compress::EIGHT_LANES;
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
@@ -105,7 +104,7 @@ impl Simd for Avx2 {
                 let offsets = _mm256_mullo_epi32(self.iota(), _mm256_set1_epi32(stride as i32));
                 return _mm256_i32gather_ps::<1>(p.cast(), offsets);
             }
-            let at = |k: usize| p.add(k * stride).cast::<f32>().read_unaligned();
+            let at = |k: usize| strided(p, k, stride).read_unaligned();
             _mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))
         }
     }

@@ -1,8 +1,7 @@
 //! AVX-512 (F, BW, DQ, VL), sixteen lanes. Masks are mask registers; a `D` is two registers.
 
-use core::arch::x86_64::*;
-
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::arch::*;
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(());
@@ -142,7 +141,7 @@ impl Simd for Avx512 {
                 let offsets = _mm512_mullo_epi32(self.iota(), _mm512_set1_epi32(stride as i32));
                 return _mm512_i32gather_ps::<1>(offsets, p.cast());
             }
-            let at = |k: usize| p.add(k * stride).cast::<f32>().read_unaligned();
+            let at = |k: usize| strided(p, k, stride).read_unaligned();
             _mm512_setr_ps(
                 at(0),
                 at(1),

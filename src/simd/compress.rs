@@ -21,10 +21,20 @@ const fn eight_lanes() -> [[u8; 8]; 256] {
 }
 
 /// For each mask, the bytes of the lanes that it keeps, first to last.
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
 pub(super) static FOUR_LANES: [[u8; 16]; 16] = four_lanes();
 
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
 const fn four_lanes() -> [[u8; 16]; 16] {
     let mut table = [[0; 16]; 16];
     let mut mask = 0;

@@ -10,20 +10,32 @@
 //! fixes one meaning: `min` and `max` return their second operand when either is NaN (as x86 does),
 //! division is the IEEE one, nothing is fused (but for `mul_add_d`), and rounding to integers is to nearest even.
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx512;
 mod compress;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod pair;
 mod scalar;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod sse;
 #[cfg(test)]
 mod tests;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!(
+    "without SSE2 floats are rounded as the x87 unit does, and the same bits everywhere cannot be promised: \
+    build for i686, not for i586"
+);
+
+#[cfg(target_arch = "x86")]
+use core::arch::x86 as arch;
+#[cfg(target_arch = "x86_64")]
+use core::arch::x86_64 as arch;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::Implementation;
@@ -292,14 +304,23 @@ pub(crate) unsafe fn store_relaxed(p: *mut f32, x: f32) {
     unsafe { AtomicU32::from_ptr(p.cast()) }.store(x.to_bits(), Relaxed);
 }
 
-/// Address of record `index[3 * lane]` of four floats.
+/// Address of record `index[3 * lane]` of four floats. With pointers of 32 bits the product may overflow: `p` is where
+/// record 0 would be, and may have wrapped around, too.
 ///
 /// # Safety
 /// The index can be read.
 #[inline(always)]
 unsafe fn record(p: *const f32, index: *const u32, lane: usize) -> *const f32 {
     // SAFETY: the caller's contract.
-    p.wrapping_add(4 * unsafe { index.add(3 * lane).read_unaligned() } as usize)
+    let index = unsafe { index.add(3 * lane).read_unaligned() };
+    p.wrapping_add((index as usize).wrapping_mul(4))
+}
+
+/// Address of the float `k` strides after `p`. Of vertices in several arrays the last may be more than `isize::MAX` bytes after
+/// the first where pointers have 32 bits.
+#[inline(always)]
+fn strided(p: *const u8, k: usize, stride: usize) -> *const f32 {
+    p.wrapping_add(k.wrapping_mul(stride)).cast()
 }
 
 /// A piece of the kernel that is compiled once for a token and called, not inlined, from wherever it is used.
@@ -318,22 +339,24 @@ pub(crate) trait Job {
 #[inline]
 pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
     match implementation {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         // SAFETY: an object's implementation is one of `available`, which asked the processor.
         Implementation::Avx512 => unsafe { avx512::enter(job) },
-        #[cfg(all(test, target_arch = "x86_64"))]
+        #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
         // SAFETY: as above.
         Implementation::Avx2 if SIXTEEN_LANES.get() => unsafe { avx2::enter_sixteen_lanes(job) },
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         // SAFETY: as above.
         Implementation::Avx2 => unsafe { avx2::enter(job) },
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         // SAFETY: as above.
         Implementation::Sse41 => unsafe { sse::enter_sse41(job) },
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Implementation::Sse2 => sse::enter_sse2(job),
         #[cfg(target_arch = "aarch64")]
         Implementation::Neon => neon::enter(job),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Implementation::Simd128 => wasm::enter(job),
         _ => scalar::enter(job),
     }
 }
@@ -342,21 +365,21 @@ pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
 #[inline]
 pub(crate) fn run_on_eight_lanes<J: Job>(implementation: Implementation, job: J) -> J::Output {
     match implementation {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         // SAFETY: an object's implementation is one of `available`, and where AVX-512 is, AVX2 is.
         Implementation::Avx512 | Implementation::Avx2 => unsafe { avx2::enter(job) },
         other => run(other, job),
     }
 }
 
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
 std::thread_local! {
     static SIXTEEN_LANES: core::cell::Cell<bool> = const { core::cell::Cell::new(false) };
 }
 
 /// Does `what` with sixteen lanes, two vectors side by side, in place of AVX2's eight: what is only for such vectors is tested
 /// where the processor has none. Only what runs on this thread.
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
 pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
     struct Reset;
     impl Drop for Reset {
@@ -372,7 +395,7 @@ pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
 /// What this processor can run, the plainest first.
 pub(crate) fn available() -> &'static [Implementation] {
     use Implementation::*;
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         const ALL: [Implementation; 5] = [Scalar, Sse2, Sse41, Avx2, Avx512];
         let sse41 = is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3");
@@ -395,7 +418,12 @@ pub(crate) fn available() -> &'static [Implementation] {
     {
         &[Scalar, Neon]
     }
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(target_arch = "wasm32")]
+    {
+        // A module either has simd128 throughout or not at all.
+        if cfg!(target_feature = "simd128") { &[Scalar, Simd128] } else { &[Scalar] }
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
     {
         &[Scalar]
     }

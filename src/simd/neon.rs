@@ -4,7 +4,7 @@ use core::arch::aarch64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Neon(());
@@ -104,7 +104,7 @@ impl Simd for Neon {
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> float32x4_t {
         // SAFETY: the token, and the caller's contract.
         unsafe {
-            let at = |k: usize| p.add(k * stride).cast::<f32>().read_unaligned();
+            let at = |k: usize| strided(p, k, stride).read_unaligned();
             vld1q_f32([at(0), at(1), at(2), at(3)].as_ptr())
         }
     }

@@ -1,6 +1,6 @@
 //! Twice as many lanes: two vectors of a narrower instruction set side by side.
 
-use super::{Apart, Simd};
+use super::{Apart, Simd, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Pair<S>(pub S);
@@ -114,7 +114,7 @@ impl<S: Simd> Simd for Pair<S> {
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> Self::F {
         // SAFETY: the caller's contract, half by half.
-        unsafe { [self.0.load_strided(p, stride), self.0.load_strided(p.add(S::LANES * stride), stride)] }
+        unsafe { [self.0.load_strided(p, stride), self.0.load_strided(strided(p, S::LANES, stride).cast(), stride)] }
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: Self::I) -> Self::F {

@@ -1,7 +1,7 @@
 //! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
 
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
@@ -156,7 +156,7 @@ impl Simd for Scalar4 {
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> [f32; 4] {
         let at = [0, 1, 2, 3];
         // SAFETY: the caller's contract.
-        lanes!(at => unsafe { p.add(at * stride).cast::<f32>().read_unaligned() })
+        lanes!(at => unsafe { strided(p, at, stride).read_unaligned() })
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: [i32; 4]) -> [f32; 4] {

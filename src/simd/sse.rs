@@ -1,11 +1,10 @@
-//! SSE2, the baseline of x86-64, and SSE4.1: four lanes, used two by two. Masks are vectors of all ones or
+//! SSE2, the baseline of x86-64 and i686, and SSE4.1: four lanes, used two by two. Masks are vectors of all ones or
 //! all zeros. What SSE2 lacks (blends, byte shuffles, some minima) is spelled out.
 
-use core::arch::x86_64::*;
-
+use super::arch::*;
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed};
+use super::{Apart, Job, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(());
@@ -16,7 +15,7 @@ pub(super) struct Sse41(());
 /// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
 #[inline(never)]
 pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
-    // Every x86-64 processor has SSE2: the token needs no more proof.
+    // The target has SSE2: the token needs no more proof.
     job.run(Pair(Sse2(())))
 }
 
@@ -33,6 +32,28 @@ pub(super) unsafe fn enter_sse41<J: Job>(job: J) -> J::Output {
 #[inline(never)]
 unsafe fn apart_sse41<J: Apart<Sse41>>(s: Sse41, job: J) -> J::Output {
     job.run(s)
+}
+
+/// The lanes as numbers, two at a time where registers have 64 bits.
+///
+/// # Safety
+/// The processor has SSE2.
+#[inline(always)]
+unsafe fn numbers(x: __m128i) -> [u32; 4] {
+    // SAFETY: the caller's contract.
+    unsafe {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let (low, high) = (_mm_cvtsi128_si64(x), _mm_cvtsi128_si64(_mm_unpackhi_epi64(x, x)));
+            [low as u32, (low >> 32) as u32, high as u32, (high >> 32) as u32]
+        }
+        #[cfg(target_arch = "x86")]
+        {
+            let mut lanes = [0; 4];
+            _mm_storeu_si128(lanes.as_mut_ptr().cast(), x);
+            lanes
+        }
+    }
 }
 
 /// What SSE2 and SSE4.1 do alike.
@@ -63,10 +84,9 @@ macro_rules! shared {
         unsafe fn gather_pairs(self, p: *const f32, index: __m128i) -> [__m128; 2] {
             // SAFETY: the token, and the caller's contract.
             unsafe {
-                let at = |k: i64| _mm_loadl_epi64(p.add(k as u32 as usize).cast());
-                let two = |k: i64| _mm_castsi128_ps(_mm_unpacklo_epi64(at(k), at(k >> 32)));
-                let low = two(_mm_cvtsi128_si64(index));
-                let high = two(_mm_cvtsi128_si64(_mm_unpackhi_epi64(index, index)));
+                let [a, b, c, d] = numbers(index).map(|k| _mm_loadl_epi64(p.add(k as usize).cast()));
+                let low = _mm_castsi128_ps(_mm_unpacklo_epi64(a, b));
+                let high = _mm_castsi128_ps(_mm_unpacklo_epi64(c, d));
                 [_mm_shuffle_ps::<0b10_00_10_00>(low, high), _mm_shuffle_ps::<0b11_01_11_01>(low, high)]
             }
         }
@@ -144,7 +164,7 @@ macro_rules! shared {
         unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m128 {
             // SAFETY: the token, and the caller's contract.
             unsafe {
-                let at = |k: usize| p.add(k * stride).cast::<f32>().read_unaligned();
+                let at = |k: usize| strided(p, k, stride).read_unaligned();
                 _mm_setr_ps(at(0), at(1), at(2), at(3))
             }
         }

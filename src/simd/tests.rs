@@ -1,6 +1,6 @@
 //! Every operation on every instruction set against the scalar one, bit by bit.
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::with_sixteen_lanes;
 use super::{Job, Simd, available, run};
 use crate::Implementation;
@@ -126,6 +126,9 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let far: Vec<f32> = (0..4 * N).map(|x| x as f32).collect();
             results.push(floats(s.lookup_32(far.as_ptr(), s.and(i, s.i(31)))));
             results.push(floats(s.load_strided(far.as_ptr().cast::<u8>().add(8 * first), 8)));
+            // Backwards: products that wrap around.
+            let last = far.as_ptr().cast::<u8>().add(4 * (3 * N - first));
+            results.push(floats(s.load_strided(last, 4_usize.wrapping_neg())));
             let triangles: Vec<u32> = (0..3 * N as u32).collect();
             results.extend(s.load_triangles(triangles.as_ptr().add(3 * first)).map(lanes));
             results.extend(s.load_quads(far.as_ptr().add(4 * first)).map(floats));
@@ -215,7 +218,7 @@ fn every_instruction_set_agrees_with_scalar() {
             let same = expected == got;
             assert!(same, "{implementation:?}, round {round}:\n{expected:x?}\n{got:x?}");
         }
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if available().contains(&Implementation::Avx2) {
             let got = with_sixteen_lanes(|| run(Implementation::Avx2, AllOperations(input)));
             assert!(expected == got, "two vectors of AVX2, round {round}:\n{expected:x?}\n{got:x?}");

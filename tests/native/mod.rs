@@ -2,19 +2,22 @@
 #![allow(dead_code)]
 
 mod program;
+mod target;
 
 use std::env;
 use std::path::{Path, PathBuf};
 
 #[allow(unused_imports)]
 pub use program::{Link, Program, build, run};
+#[allow(unused_imports)]
+pub use target::target;
 
 /// The folder of this package.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The shared library that C programs link.
+/// The shared library that C programs link: on Windows what lists its functions.
 pub fn shared_library() -> PathBuf {
     library(Link::Shared).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -24,35 +27,54 @@ pub fn static_library() -> PathBuf {
     library(Link::Static).unwrap_or_else(|e| panic!("{e}"))
 }
 
+fn library(link: Link) -> Result<PathBuf, String> {
+    find(match (link, target().is_msvc()) {
+        (Link::Static, true) => "masked_occlusion_culling.lib",
+        (Link::Static, false) => "libmasked_occlusion_culling.a",
+        (Link::Shared, true) => "masked_occlusion_culling.dll.lib",
+        (Link::Shared, false) if target().is_windows() => "libmasked_occlusion_culling.dll.a",
+        (Link::Shared, false) if target().triple.contains("-apple-") => "libmasked_occlusion_culling.dylib",
+        (Link::Shared, false) => "libmasked_occlusion_culling.so",
+    })
+}
+
 /// cargo builds every kind of library that Cargo.toml names before a test or an example, and leaves those for C
 /// beside the executable of a test, and in `../deps` of an example.
-fn library(link: Link) -> Result<PathBuf, String> {
-    let name = match (link, cfg!(all(windows, target_env = "msvc"))) {
-        (Link::Static, true) => "masked_occlusion_culling.lib".into(),
-        (Link::Static, false) => "libmasked_occlusion_culling.a".into(),
-        // What is linked is not the library itself, but the list of its functions.
-        (Link::Shared, true) => "masked_occlusion_culling.dll.lib".into(),
-        (Link::Shared, false) => {
-            format!("{}masked_occlusion_culling{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX)
-        }
-    };
+fn find(name: &str) -> Result<PathBuf, String> {
     let executable = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
     let folder = executable.parent().unwrap_or(Path::new("."));
-    let places = [folder.join(&name), folder.join("../deps").join(&name), folder.join("..").join(&name)];
+    let places = match target().libraries() {
+        Some(libraries) => vec![libraries.join(name)],
+        None => vec![folder.join(name), folder.join("../deps").join(name), folder.join("..").join(name)],
+    };
     places
-        .into_iter()
+        .iter()
         .find(|path| path.is_file())
-        .ok_or_else(|| format!("{name} is not beside {}: was the library built for this target?", executable.display()))
+        .cloned()
+        .ok_or_else(|| format!("{name} is not in {}: was the library built for this target?", places[0].display()))
 }
 
 /// The functions that the shared library exports.
 pub fn exported_symbols() -> std::collections::BTreeSet<String> {
-    let output = std::process::Command::new("nm")
-        .args(["-D", "--defined-only", "--extern-only", "--format=posix"])
-        .arg(shared_library())
+    let windows = target().is_windows();
+    let (tool, arguments, library) = if windows {
+        ("objdump", &["-p"][..], find("masked_occlusion_culling.dll").unwrap_or_else(|e| panic!("{e}")))
+    } else {
+        ("nm", &["-D", "--defined-only", "--extern-only", "--format=posix"][..], shared_library())
+    };
+    let output = std::process::Command::new(tool)
+        .args(arguments)
+        .arg(library)
         .output()
-        .expect("nm (binutils) reads the symbols");
-    assert!(output.status.success(), "nm: {}", String::from_utf8_lossy(&output.stderr));
+        .unwrap_or_else(|e| panic!("{tool} (binutils) reads the symbols: {e}"));
+    assert!(output.status.success(), "{tool}: {}", String::from_utf8_lossy(&output.stderr));
     let symbols = String::from_utf8(output.stdout).expect("names are text");
-    symbols.lines().filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
+    if windows {
+        // Lines such as `[   3] +base[   4]  0003 name`, up to an empty one.
+        let table = symbols.lines().skip_while(|line| !line.starts_with("[Ordinal/Name Pointer] Table")).skip(1);
+        let names = table.take_while(|line| !line.trim().is_empty());
+        names.filter_map(|line| line.split_whitespace().last()).map(String::from).collect()
+    } else {
+        symbols.lines().filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
+    }
 }

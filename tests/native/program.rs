@@ -1,10 +1,9 @@
 //! Compiles C and C++ programs against include/ and the library, for whoever asks, and runs them.
 
-use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{library, root};
+use super::{library, root, target};
 
 /// How a program gets the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,16 +28,13 @@ pub struct Program<'a> {
 /// Compiles and links; returns the program's path, or what the compiler said.
 pub fn build(program: &Program) -> Result<PathBuf, String> {
     let cpp = program.source.extension().is_some_and(|e| e == "cpp");
-    let target = env!("MOC_TARGET");
-    let mut build = cc::Build::new();
-    build.cpp(cpp).target(target).host(target).opt_level(2).debug(false).cargo_metadata(false).out_dir(program.out);
-    build.cargo_warnings(false);
-    build.warnings(true).extra_warnings(true).static_crt(false);
-    build.std(if cpp { if cfg!(target_env = "msvc") { "c++14" } else { "c++11" } } else { "c11" });
+    let mut build = target().compiler(cpp, program.out);
+    build.opt_level(2).debug(false).warnings(true).extra_warnings(true).static_crt(false);
+    build.std(if cpp { if target().is_msvc() { "c++14" } else { "c++11" } } else { "c11" });
     let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
 
-    let exe =
-        program.out.join(program.source.file_stem().unwrap_or_default()).with_extension(env::consts::EXE_EXTENSION);
+    let name = program.out.join(program.source.file_stem().unwrap_or_default());
+    let exe = name.with_extension(target().executable_extension());
     let mut command = compiler.to_command();
     command.current_dir(program.out);
     for (name, value) in program.defines {
@@ -52,17 +48,8 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
         command.arg("/EHsc").arg(out).arg(library);
         command.args(["kernel32.lib", "ntdll.lib", "userenv.lib", "ws2_32.lib", "dbghelp.lib"]);
     } else {
-        command.arg("-pthread").arg("-o").arg(&exe).arg(&library);
-        if program.link == Link::Shared {
-            let folder = library.parent().unwrap_or(Path::new("."));
-            command.arg(format!("-Wl,-rpath,{}", folder.display()));
-        } else if cfg!(target_os = "linux") {
-            command.args(["-lgcc_s", "-lutil", "-lrt", "-ldl", "-lm"]);
-        } else if cfg!(target_os = "windows") {
-            command.args(["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp"]);
-        } else {
-            command.arg("-lm");
-        }
+        command.arg("-o").arg(&exe);
+        target().link(&mut command, &library, program.link == Link::Shared);
     }
     run(&mut command).map(|_| exe)
 }
@@ -72,7 +59,7 @@ pub fn run(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|e| format!("{}: {e}", command.get_program().display()))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     if output.status.success() {
-        return Ok(text(&output.stdout));
+        return Ok(text(&output.stdout).replace("\r\n", "\n"));
     }
     Err(format!(
         "{}\n{}{}{}",

@@ -1,0 +1,15 @@
+/* windows.h without what programs seldom need, and without its macros for names that others use. */
+#ifndef CAPI_TESTS_SMALL_WINDOWS_H
+#define CAPI_TESTS_SMALL_WINDOWS_H
+
+#ifndef WIN32_LEAN_AND_MEAN
+#define WIN32_LEAN_AND_MEAN
+#endif
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#undef near
+#undef far
+
+#endif

@@ -1,0 +1,97 @@
+//! What C and C++ programs are compiled for: the target of whoever asks, or another one whose libraries were built
+//! before (`.ci/windows`). Then the environment has
+//!   MOC_TEST_TARGET      its triple
+//!   MOC_TEST_LIBRARIES   the folder of its libraries
+//!   MOC_TEST_RUNNER      what runs its programs here
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// See [`target`].
+pub struct Target {
+    pub triple: String,
+    /// Of another target: where its libraries are, and what runs its programs.
+    other: Option<(PathBuf, String)>,
+}
+
+/// The target of C and C++ programs.
+pub fn target() -> &'static Target {
+    static TARGET: OnceLock<Target> = OnceLock::new();
+    TARGET.get_or_init(|| {
+        let variable = |name| env::var(name).unwrap_or_else(|_| panic!("MOC_TEST_TARGET is set, and {name} is not"));
+        match env::var("MOC_TEST_TARGET") {
+            Err(_) => Target { triple: env!("MOC_TARGET").into(), other: None },
+            Ok(triple) => {
+                let libraries = variable("MOC_TEST_LIBRARIES").into();
+                Target { triple, other: Some((libraries, variable("MOC_TEST_RUNNER"))) }
+            }
+        }
+    })
+}
+
+impl Target {
+    pub fn is_windows(&self) -> bool {
+        self.triple.contains("-windows-")
+    }
+
+    pub fn is_msvc(&self) -> bool {
+        self.triple.ends_with("-msvc")
+    }
+
+    pub fn is_linux(&self) -> bool {
+        self.triple.contains("-linux-")
+    }
+
+    /// Where the libraries of another target are.
+    pub fn libraries(&self) -> Option<&Path> {
+        self.other.as_ref().map(|(folder, _)| folder.as_path())
+    }
+
+    /// The compiler that the `cc` crate finds; `out` is a folder for its trials.
+    pub fn compiler(&self, cpp: bool, out: &Path) -> cc::Build {
+        let mut build = cc::Build::new();
+        build.cpp(cpp).target(&self.triple).cargo_metadata(false).cargo_warnings(false).out_dir(out);
+        build.host(if self.other.is_some() { env!("MOC_HOST") } else { &self.triple });
+        build
+    }
+
+    /// Runs a program that was compiled for this target.
+    pub fn command(&self, program: impl AsRef<Path>) -> Command {
+        match &self.other {
+            None => Command::new(program.as_ref()),
+            Some((_, runner)) => {
+                let mut command = Command::new(runner);
+                command.arg(program.as_ref());
+                command
+            }
+        }
+    }
+
+    pub fn executable_extension(&self) -> &'static str {
+        if self.is_windows() { "exe" } else { "" }
+    }
+
+    /// What a program that links `library` needs besides, for compilers with the options of gcc.
+    pub fn link(&self, command: &mut Command, library: &Path, shared: bool) {
+        command.arg("-pthread").arg(library);
+        if self.is_windows() {
+            // The compiler's own libraries are not on Windows, so they go into the program.
+            command.arg("-static");
+        } else if shared {
+            command.arg(format!("-Wl,-rpath,{}", library.parent().unwrap_or(Path::new(".")).display()));
+        }
+        if !shared {
+            // What `rustc --print native-static-libs` names.
+            if self.is_windows() {
+                command.args(["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp"]);
+            } else if self.is_linux() {
+                command.args(["-lgcc_s", "-lutil", "-lrt", "-ldl"]);
+            }
+        }
+        if !self.is_windows() {
+            command.arg("-lm");
+        }
+    }
+}
