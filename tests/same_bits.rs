@@ -118,6 +118,7 @@ const GOLDEN: [[[u64; 3]; 4]; 5] = [
 #[test]
 fn every_instruction_set_gives_the_golden_bits() {
     let print = std::env::var_os("PRINT_HASHES").is_some();
+    println!("on {:?}", Implementation::available());
     let mut wrong = Vec::new();
     for (scene, golden) in scenes::all().iter().zip(&GOLDEN) {
         for (rule, golden) in RULES.into_iter().zip(golden) {
