@@ -3,11 +3,15 @@
 use core::ptr::NonNull;
 use std::sync::{Mutex, PoisonError};
 
+use super::lifecycle::{NEAR, RESOLUTION};
 use super::mesh::{CheckedMesh, MeshArguments};
+use super::messages::note;
 use super::pointers::{check_out, objects, read, slice_mut, write};
+use super::query::odd_rectangle;
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_VertexLayout};
-use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, VertexLayout};
+use crate::{CullingResult, CullingThreadpool, Error, MaskedOcclusionCulling, VertexLayout};
 
 /// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
 pub struct MOC_Threadpool {
@@ -34,7 +38,7 @@ impl MOC_Threadpool {
         n_triangles: i32,
         winding: i32,
         clip_planes: i32,
-    ) -> Result<CheckedMesh<'a>, Error> {
+    ) -> Result<CheckedMesh<'a>, Refusal> {
         let State { matrix, layout } = *self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let arguments = MeshArguments {
             vertices,
@@ -47,7 +51,7 @@ impl MOC_Threadpool {
             layout: &raw const layout,
         };
         // SAFETY: the caller's contract, and two locals.
-        self.pool.with_object(|moc| unsafe { arguments.check(moc) })
+        self.pool.with_object(|moc| Ok(unsafe { arguments.check(moc) })).because(Error::NoBuffer, EMPTY)?
     }
 
     fn change(&self, change: impl FnOnce(&mut State)) {
@@ -55,11 +59,13 @@ impl MOC_Threadpool {
     }
 }
 
+const EMPTY: &str = "no buffer: call MOC_ThreadpoolSetBuffer first, with an object that has one";
+
 /// # Safety
 /// Null or from `MOC_ThreadpoolCreate` and not destroyed.
-unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Error> {
+unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
+    unsafe { pool.as_ref() }.ok_or(Refusal::new(Error::NullPointer, "the pool is null"))
 }
 
 /// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
@@ -204,7 +210,13 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     height: u32,
 ) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.set_resolution(width, height))
+    guard(|| {
+        unsafe { handle(pool) }?
+            .pool
+            .set_resolution(width, height)
+            .because(Error::InvalidSize, RESOLUTION)
+            .because(Error::NoBuffer, EMPTY)
+    })
 }
 
 /// Sets the near plane of the calls that follow, and of the object, as MOC_SetNearClipPlane does.
@@ -216,7 +228,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
+    guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near).because(Error::InvalidNumber, NEAR))
 }
 
 /// Sets the matrix of the calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
@@ -253,7 +265,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
         let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
         let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
         if layout.stride < 0 {
-            return Err(Error::InvalidLayout);
+            return Err(Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative"));
         }
         pool.change(|state| state.layout = layout);
         Ok(())
@@ -269,7 +281,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
+    guard(|| unsafe { handle(pool) }?.pool.clear_buffer().because(Error::NoBuffer, EMPTY))
 }
 
 /// Submits occluders, with the matrix, vertex layout and near plane that are set, and returns at once, or
@@ -295,7 +307,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
         // SAFETY: the caller's contract.
         let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
-        unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+        Ok(unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
     })
 }
 
@@ -318,7 +330,12 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     let query = || {
         check_out(result)?;
         // SAFETY: the caller's contract.
-        unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin)
+        let answer =
+            unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin).because(Error::NoBuffer, EMPTY)?;
+        if answer == CullingResult::Visible {
+            note("MOC_ThreadpoolTestRect", || odd_rectangle([xmin, ymin, xmax, ymax, wmin]));
+        }
+        Ok(answer)
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
@@ -346,7 +363,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
         // SAFETY: the caller's contract.
         let mesh = unsafe { handle.mesh(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
-        unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+        Ok(unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
@@ -368,14 +385,12 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
         check_out(out)?;
         // SAFETY: the caller's contract.
         let pool = &unsafe { handle(pool) }?.pool;
-        let flip = types::flag(flip_y)?;
-        pool.with_pixels(
-            |pixels| {
-                // SAFETY: the caller's contract.
-                unsafe { slice_mut(out, pixels) }
-            },
-            flip,
-        )
+        let flip = types::flag(flip_y, "flip_y is neither 0 nor 1")?;
+        // SAFETY: the caller's contract.
+        let out = |pixels| unsafe { slice_mut(out, pixels) };
+        pool.with_pixels(out, flip)
+            .because(Error::NoBuffer, EMPTY)
+            .because(Error::InvalidLayout, "out is not at a multiple of 4 bytes")
     })
 }
 
@@ -397,6 +412,6 @@ pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
         // SAFETY: the caller's contract.
         let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
         // SAFETY: the caller's contract.
-        unsafe { pool.pool.merge_buffers(&others) }
+        unsafe { pool.pool.merge_buffers(&others) }.because(Error::NoBuffer, EMPTY)
     })
 }
