@@ -29,6 +29,9 @@
  */
 #pragma once
 
+/* Also where a program includes its headers inside of extern "C". */
+extern "C++" {
+
 // Not used here, but the header that this one stands in for has them, and programs rely on it.
 #include <atomic>
 #include <condition_variable>
@@ -81,7 +84,12 @@ public:
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
     /** SetResolution of the object, after what was submitted is drawn. */
-    void SetResolution(unsigned int width, unsigned int height) { MOC_ThreadpoolSetResolution(mPool, width, height); }
+    MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
+    {
+        MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;
+        MOC_ThreadpoolSetResolution(mPool, width, height);
+        allocation.ThrowAgain();
+    }
 
     /** The near plane, in clip-space w, of the calls that follow, and of the object. */
     void SetNearClipPlane(float nearDist) { MOC_ThreadpoolSetNearClipPlane(mPool, nearDist); }
@@ -143,3 +151,5 @@ public:
 private:
     MOC_Threadpool *mPool = nullptr;
 };
+
+} /* extern "C++" */

@@ -13,6 +13,9 @@
  */
 #pragma once
 
+/* Also where a program includes its headers inside of extern "C". */
+extern "C++" {
+
 #include <string.h>
 
 #include <utility>
@@ -125,3 +128,5 @@ private:
         mPlaybackOrder.push_back(std::pair<char, int>(static_cast<char>(call.kind), index));
     }
 };
+
+} /* extern "C++" */

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 /// The files that export functions or define their types, in the order of the header.
-const SOURCES: [&str; 10] =
-    ["status", "types", "lifecycle", "callbacks", "draw", "query", "bins", "transform", "pool", "recorder"];
+const SOURCES: [&str; 11] =
+    ["status", "messages", "types", "lifecycle", "callbacks", "draw", "query", "bins", "transform", "pool", "recorder"];
 
 fn generate(root: &Path) -> String {
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be read");
