@@ -1,10 +1,6 @@
 // A unit as it is without exceptions (-fno-exceptions), in a program that has them elsewhere.
-#undef __cpp_exceptions
-#undef __EXCEPTIONS
-#undef _CPPUNWIND
+#define MOC_DETAIL_EXCEPTIONS 0
 #include "throwing_allocator.h"
-
-static_assert(MOC_DETAIL_EXCEPTIONS == 0, "the header takes this for a unit without exceptions");
 
 MaskedOcclusionCulling *CreateWithoutExceptions(MaskedOcclusionCulling::pfnAlignedAlloc alloc,
                                                 MaskedOcclusionCulling::pfnAlignedFree release)

@@ -11,7 +11,9 @@
  */
 #pragma once
 
-#if defined(__cpp_exceptions) || defined(__EXCEPTIONS) || defined(_CPPUNWIND)
+#if defined(MOC_DETAIL_EXCEPTIONS)
+/* A test asks for the other way than the compiler's. */
+#elif defined(__cpp_exceptions) || defined(__EXCEPTIONS) || defined(_CPPUNWIND)
 #define MOC_DETAIL_EXCEPTIONS 1
 #else
 #define MOC_DETAIL_EXCEPTIONS 0

@@ -34,8 +34,11 @@ const SWITCHES: Program = Program {
 const STATISTICS: Program = Program { name: "statistics", sources: &["statistics.cpp"], cpp: true };
 const STATISTICS_LAYOUT: Program =
     Program { name: "statistics_layout", sources: &["statistics_layout.cpp"], cpp: true };
-const THROWING_ALLOCATOR: Program =
-    Program { name: "throwing_allocator", sources: &["throwing_allocator.cpp", "throwing_allocator_none.cpp"], cpp: true };
+const THROWING_ALLOCATOR: Program = Program {
+    name: "throwing_allocator",
+    sources: &["throwing_allocator.cpp", "throwing_allocator_none.cpp"],
+    cpp: true,
+};
 const MESSAGES: Program = Program { name: "messages", sources: &["messages.cpp"], cpp: true };
 const THEIR_PROGRAMS: Program = Program { name: "their_programs", sources: &["their_programs.cpp"], cpp: true };
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
