@@ -39,6 +39,8 @@ const THROWING_ALLOCATOR: Program = Program {
     sources: &["throwing_allocator.cpp", "throwing_allocator_none.cpp"],
     cpp: true,
 };
+const FLOAT_ENVIRONMENT: Program =
+    Program { name: "float_environment", sources: &["float_environment.cpp"], cpp: true };
 const MESSAGES: Program = Program { name: "messages", sources: &["messages.cpp"], cpp: true };
 const THEIR_PROGRAMS: Program = Program { name: "their_programs", sources: &["their_programs.cpp"], cpp: true };
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
@@ -129,6 +131,8 @@ programs! {
     all_functions_static: ALL_FUNCTIONS, Library::Static;
     exact_arrays_shared: EXACT_ARRAYS, Library::Shared;
     exact_arrays_static: EXACT_ARRAYS, Library::Static;
+    float_environment_shared: FLOAT_ENVIRONMENT, Library::Shared;
+    float_environment_static: FLOAT_ENVIRONMENT, Library::Static;
     hostile_shared: HOSTILE, Library::Shared;
     hostile_static: HOSTILE, Library::Static;
     messages_shared: MESSAGES, Library::Shared;

@@ -8,6 +8,7 @@
 mod bins;
 mod callbacks;
 mod draw;
+mod float_environment;
 mod lifecycle;
 mod mesh;
 mod messages;

@@ -3,6 +3,7 @@
 use core::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::float_environment::in_default_environment;
 use super::messages;
 use super::pointers::write;
 use super::refusal::Refusal;
@@ -135,7 +136,7 @@ pub(super) unsafe fn guard_result<F: FnOnce() -> Result<CullingResult, Refusal>>
 
 #[inline]
 fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -> MOC_Status {
-    match catch_unwind(AssertUnwindSafe(body)) {
+    match in_default_environment(|| catch_unwind(AssertUnwindSafe(body))) {
         Ok(Ok(())) => {
             messages::done();
             MOC_Status::MOC_STATUS_OK
