@@ -55,10 +55,11 @@
  *   x, y         any finite number. A NaN or an infinity drops an occluder's triangle, and makes an occludee visible.
  *   triangles    0 to INT32_MAX a call; indices have 32 bits and no sign.
  *
- * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion and MOC_StatusText. Where it is not
+ * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion, MOC_StatusText and MOC_GetLastStatus. Where it is not
  * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
  * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
- * passed as int32_t and checked.
+ * passed as int32_t and checked. MOC_GetLastStatus has the status of the thread's last call for who did not keep it, and
+ * MOC_SetMessageCallback takes a function that is told which argument was refused, and why.
  *
  * Null. A pointer may be null where the function says so. Where it may not, null is refused with
  * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
@@ -76,6 +77,20 @@
  * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
  * const object may run at once on several threads while no function that takes it without const does. One of them
  * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once.
+ *
+ * Traps
+ *   floating point   A call computes to nearest, with denormal numbers and without traps, whatever the thread is set to, and
+ *                    leaves the thread as it was: the same bits with any rounding mode, and no SIGFPE. It may leave exception
+ *                    flags behind (fetestexcept) where the thread has the default settings. On processors other than x86 with
+ *                    SSE and aarch64 nothing is set: there results hold for rounding to nearest.
+ *   stack            A draw or a test of triangles needs up to 59 KB of stack (64 KB in a build without optimisation),
+ *                    MOC_BinTriangles 42, MOC_RenderTrilist 33, MOC_TestRect and the others less than 5. Fibers of 64 KB are too
+ *                    small for the first two once their own frames are counted: give them 96 or more.
+ *   transforming     MOC_TransformVertices in place is not supported: 16 bytes go out for each vertex, and where fewer come in it
+ *                    would overwrite vertices that it has not read yet.
+ *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it until it ends, the main thread
+ *                    for good. That is safe; but the same path loaded again is the old library, not a new build of it.
+ *   allocation       The callbacks of MOC_Settings must not throw; MOC_CallAlloc is for those that do.
  *
  * Where to go from here
  *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
