@@ -76,6 +76,7 @@ impl Driver<'_> {
             statistics: hostile::enumeration(rng, &[0, 1, 2]),
             alloc: Some(memory::alloc),
             free: Some(memory::free),
+            call_alloc: None,
         };
         match rng.u8(..4) {
             0 => settings.alloc = None,
