@@ -28,6 +28,7 @@ static void null_pointers(void)
     MOC_TriList list = {3, 1, NULL};
     MOC_Settings settings;
     MOC_Statistics stats;
+    int64_t dropped;
     MOC_AlignedAlloc alloc;
     MOC_AlignedFree release;
     float quad[16], number, out[16];
@@ -75,6 +76,8 @@ static void null_pointers(void)
     IS_NULL(MOC_MergeBuffer(NULL, NULL));
     IS_NULL(MOC_GetStatistics(NULL, &stats));
     IS_NULL(MOC_GetStatistics(moc, NULL));
+    IS_NULL(MOC_GetDroppedTriangles(NULL, &dropped));
+    IS_NULL(MOC_GetDroppedTriangles(moc, NULL));
     IS_NULL(MOC_ComputePixelDepthBuffer(NULL, out, 0));
     IS_NULL(MOC_ComputePixelDepthBuffer(moc, NULL, 0));
     IS_NULL(MOC_ComputePixelDepthBufferChecked(NULL, out, 16, 0));

@@ -47,7 +47,7 @@ void Occluders(MOC *moc)
     CHECK_EQ(stats.mOccluders.mNumRasterizedTriangles, 2 + 2 + 4);
     CHECK_EQ(stats.mOccluders.mNumTilesTraversed, 32 + 4 * 8);
     CHECK_EQ(stats.mOccluders.mNumTilesUpdated, 24 + 24);
-    CHECK_EQ(stats.mOccluders.mNumDroppedTriangles, 0);
+    CHECK_EQ(moc->GetNumDroppedTriangles(), 0);
 
     // A rectangle that is refused counts nothing.
     const MOC::ScissorRect odd(1, 0, 32, 64);
@@ -68,7 +68,7 @@ void Occluders(MOC *moc)
     CHECK_EQ(stats.mOccluders.mNumProcessedTriangles, 8 + 1 + 2 + 2);
     CHECK_EQ(stats.mOccluders.mNumRasterizedTriangles, 8);
     CHECK_EQ(stats.mOccluders.mNumTilesTraversed, 64);
-    CHECK_EQ(stats.mOccluders.mNumDroppedTriangles, 2);
+    CHECK_EQ(moc->GetNumDroppedTriangles(), 2);
 }
 
 void Occludees(MOC *moc)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -84,21 +86,43 @@ static Moc::BackfaceWinding Backfaces(const Matrix &m) {
 
 struct Box { float lo[3], hi[3]; };
 struct Rect { float xmin, ymin, xmax, ymax, wmin; };
-// What TestRect asks for. A box that reaches through the near plane has no rectangle on the screen: with a wmin of 0
-// the answer is VISIBLE.
-static Rect ProjectBox(const Matrix &m, const Box &box, float nearW) {
-    Rect r = {1e30f, 1e30f, -1e30f, -1e30f, 1e30f};
+enum class Place { Outside, NearPlane, Rectangle };
+
+// Rounded so that the rectangle holds the box.
+static float Below(double v) { return std::nextafter(float(v), -FLT_MAX); }
+static float Above(double v) { return std::nextafter(float(v), FLT_MAX); }
+
+// Where a box is. Rectangle: r is what TestRect asks for. NearPlane: it reaches through the near plane and may be in view, where
+// no rectangle holds it. Outside: all of it is nearer than the near plane, behind the eye, or beyond one side of the view.
+static Place ProjectBox(const Matrix &m, const Box &box, float nearW, Rect &r) {
+    int before = 0, behind = 0, left = 0, right = 0, below = 0, above = 0;
+    r = {FLT_MAX, FLT_MAX, -FLT_MAX, -FLT_MAX, FLT_MAX};
     for (int corner = 0; corner < 8; ++corner) {
-        const float x = corner & 1 ? box.hi[0] : box.lo[0];
-        const float y = corner & 2 ? box.hi[1] : box.lo[1];
-        const float z = corner & 4 ? box.hi[2] : box.lo[2];
-        const float w = x * m[3] + y * m[7] + z * m[11] + m[15];
-        if (!(w >= nearW && w > 0)) return {-1, -1, 1, 1, 0};
-        const float u = (x * m[0] + y * m[4] + z * m[8] + m[12]) / w;
-        const float v = (x * m[1] + y * m[5] + z * m[9] + m[13]) / w;
-        r = {std::min(r.xmin, u), std::min(r.ymin, v), std::max(r.xmax, u), std::max(r.ymax, v), std::min(r.wmin, w)};
+        // In double precision no corner changes sides.
+        const double x = corner & 1 ? box.hi[0] : box.lo[0];
+        const double y = corner & 2 ? box.hi[1] : box.lo[1];
+        const double z = corner & 4 ? box.hi[2] : box.lo[2];
+        const double cx = x * m[0] + y * m[4] + z * m[8] + m[12];
+        const double cy = x * m[1] + y * m[5] + z * m[9] + m[13];
+        const double w = x * m[3] + y * m[7] + z * m[11] + m[15];
+        before += w >= nearW && w > 0, behind += w < nearW || w <= 0;
+        left += cx < -w, right += cx > w, below += cy < -w, above += cy > w;
+        r = {std::min(r.xmin, Below(cx / w)), std::min(r.ymin, Below(cy / w)), std::max(r.xmax, Above(cx / w)),
+             std::max(r.ymax, Above(cy / w)), std::min(r.wmin, Below(w))};
     }
-    return r;
+    if (behind == 8 || left == 8 || right == 8 || below == 8 || above == 8) return Place::Outside;
+    return before == 8 ? Place::Rectangle : Place::NearPlane;
+}
+
+// The answer for a box.
+static Moc::CullingResult TestBox(const Moc *moc, const Matrix &m, const Box &box) {
+    Rect r;
+    switch (ProjectBox(m, box, moc->GetNearClipPlane(), r)) {
+        case Place::Outside: return Moc::VIEW_CULLED;
+        case Place::NearPlane: return Moc::VISIBLE;
+        case Place::Rectangle: break;
+    }
+    return moc->TestRect(r.xmin, r.ymin, r.xmax, r.ymax, r.wmin);
 }
 
 // An orthographic view has the same w everywhere, which is no depth. With z from 0 (near) to 1 (far) this makes 2 - z
@@ -142,8 +166,7 @@ static void Check(const std::string &what, Moc *moc, const Matrix &toClip, float
     for (Box box : kBoxes) {
         if (forward < 0) std::swap(box.lo[2], box.hi[2]);
         box.lo[2] *= forward, box.hi[2] *= forward;
-        const Rect r = ProjectBox(toClip, box, moc->GetNearClipPlane());
-        answers += " " + Text(moc->TestRect(r.xmin, r.ymin, r.xmax, r.ymax, r.wmin));
+        answers += " " + Text(TestBox(moc, toClip, box));
     }
     std::vector<float> depth(kWidth * kHeight);
     moc->ComputePixelDepthBuffer(depth.data(), flipRows);
@@ -247,9 +270,52 @@ static void AroundTheEye(Moc *moc) {
     const std::string fronts = test(Moc::BACKFACE_CW), both = test(Moc::BACKFACE_NONE);
     Say("a box around the eye, fronts", fronts == "outside", fronts);
     Say("a box around the eye, both sides", both == "occluded", both);
-    const Rect r = ProjectBox(OpenGl(), box, kNear);
-    const std::string rect = Text(moc->TestRect(r.xmin, r.ymin, r.xmax, r.ymax, r.wmin));
-    Say("a box around the eye, TestRect", rect == "visible", rect);
+    const std::string whole = Text(TestBox(moc, OpenGl(), box));
+    Say("a box around the eye, TestBox", whole == "visible", whole);
+}
+
+// Boxes at the near plane and behind it, x and y within 1 of `x`, from z = `nearest` to z = `farthest`, with an empty buffer.
+static void AtTheNearPlane(Moc *moc) {
+    moc->ClearBuffer();
+    const auto ask = [&](const char *what, float x, float nearest, float farthest, const std::string &right) {
+        const Box box = {{x - 1, -1, farthest}, {x + 1, 1, nearest}};
+        const std::string answer = Text(TestBox(moc, OpenGl(), box));
+        Say(what, answer == right, answer);
+    };
+    ask("a box behind the eye", 0, 9, 5, "outside");
+    ask("a box between eye and near plane", 0, -0.1f, -0.4f, "outside");
+    ask("a box that ends at the near plane", 0, -0.1f, -kNear, "visible");
+    ask("a box through the near plane", 0, 5, -5, "visible");
+    ask("a box through the near plane, beside the view", 40, 5, -5, "outside");
+    ask("a box from the near plane on", 0, -kNear, -5, "visible");
+    ask("a box that is not a number", NAN, -3, -5, "visible");
+
+    // Of random boxes and random points in them: what is in view is not outside, and what has a rectangle is in it.
+    unsigned state = 1;
+    const auto random = [&](float lo, float hi) {
+        state = state * 1664525u + 1013904223u;
+        return lo + (hi - lo) * float(state >> 8) / 16777216.0f;
+    };
+    int wrong = 0, places[3] = {0, 0, 0};
+    for (int i = 0; i < 100000; ++i) {
+        Box box;
+        for (int k = 0; k < 3; ++k) {
+            const float size = i % 2 ? 1.0f : 12.0f, at = random(-12, 12);
+            box.lo[k] = at - random(0, size), box.hi[k] = at + random(0, size);
+        }
+        Rect r;
+        const Place place = ProjectBox(OpenGl(), box, kNear, r);
+        ++places[int(place)];
+        for (int k = 0; k < 4; ++k) {
+            const double x = random(box.lo[0], box.hi[0]) * kX, y = random(box.lo[1], box.hi[1]) * kY;
+            const double w = -random(box.lo[2], box.hi[2]);
+            const bool seen = w >= kNear && std::abs(x) <= w && std::abs(y) <= w;
+            const bool held = x / w >= r.xmin && x / w <= r.xmax && y / w >= r.ymin && y / w <= r.ymax && w >= r.wmin;
+            wrong += seen && (place == Place::Outside || (place == Place::Rectangle && !held));
+        }
+    }
+    const bool all = places[0] > 1000 && places[1] > 1000 && places[2] > 1000;
+    Say("random boxes", wrong == 0 && all, wrong != 0 ? "points are lost" : all ? "hold their points" : "too few of a kind");
 }
 
 // A slanted wall: z is 0.2 at the left of the screen, 0.8 at the right, and so 0.5 in the middle.
@@ -281,6 +347,7 @@ int main() {
     Matrices(moc);
     Layouts(moc);
     AroundTheEye(moc);
+    AtTheNearPlane(moc);
     Orthographic(moc);
     Moc::Destroy(moc);
 

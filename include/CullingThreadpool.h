@@ -37,6 +37,9 @@
  */
 #pragma once
 
+/* Also where a program includes its headers inside of extern "C". */
+extern "C++" {
+
 // Not used here, but the header that this one replaces has them, and programs rely on it.
 #include <atomic>
 #include <condition_variable>
@@ -144,7 +147,12 @@ public:
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
     /** SetResolution of the object, after what was submitted is drawn. */
-    void SetResolution(unsigned int width, unsigned int height) { MOC_ThreadpoolSetResolution(mPool, width, height); }
+    MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
+    {
+        MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;
+        MOC_ThreadpoolSetResolution(mPool, width, height);
+        allocation.ThrowAgain();
+    }
 
     /** Flush, then SetNearClipPlane of the object. */
     void SetNearClipPlane(float nearDist) { MOC_ThreadpoolSetNearClipPlane(mPool, nearDist); }
@@ -232,5 +240,7 @@ private:
 };
 
 MOC_NAMESPACE_END
+
+} /* extern "C++" */
 
 #include "moc_names_end.h"

@@ -13,6 +13,9 @@
  */
 #pragma once
 
+/* Also where a program includes its headers inside of extern "C". */
+extern "C++" {
+
 #include <string.h>
 
 #include <utility>
@@ -131,5 +134,7 @@ private:
 };
 
 MOC_NAMESPACE_END
+
+} /* extern "C++" */
 
 #include "moc_names_end.h"

@@ -2,7 +2,8 @@
  * CPU occlusion culling on a masked hierarchical depth buffer: the C++ class.
  *
  * Header-only over the C functions of masked_occlusion_culling.h, so that one compiled library serves every
- * compiler. C++11; nothing here throws.
+ * compiler. C++11. Nothing here throws but what an allocation callback of the program throws: Create and SetResolution
+ * throw that again, with the object as it was.
  *
  * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is
  * 1/w: 0 is infinitely far, larger is nearer. The same triangle is drawn by the same pixels on every
@@ -13,7 +14,12 @@
  * Wrong input. Pointers must be null or valid. Where an argument is refused (a null pointer that has to name
  * something, a negative count, a size outside of 1 to 16384, a missing buffer, an enumeration without that
  * value), a method that returns nothing does nothing, a query and a draw answer VISIBLE, and a number that is
- * asked for is 0. The C functions say what was wrong.
+ * asked for is 0. Nothing is printed or thrown. GetLastStatus says how the last call of the thread went, and whoever wants to
+ * know what was wrong with which argument gives SetMessageCallback a function:
+ *
+ *     static void Say(void *, int, const char *message) { std::fprintf(stderr, "%s\n", message); }
+ *     MaskedOcclusionCulling::SetMessageCallback(Say);
+ *     // MOC_RenderTriangles: no buffer: call MOC_SetResolution first
  *
  * Indices are trusted: RenderTriangles, TestTriangles and BinTriangles read every vertex from the lowest to the
  * highest index of the call, whether or not an index names it, and of vertices of 12 or 16 bytes with y at 4 and
@@ -29,8 +35,13 @@
  */
 #pragma once
 
+/* Also where a program includes its headers inside of extern "C", which templates and overloads must not be in. */
+extern "C++" {
+
 #include <stddef.h>
 
+#include "MaskedOcclusionCullingAllocation.h"
+#include "MaskedOcclusionCullingImplementation.h"
 #include "masked_occlusion_culling.h"
 
 /*
@@ -45,7 +56,7 @@
  * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
- *                   0 (default): GetStatistics answers zeros, but for mNumDroppedTriangles.
+ *                   0 (default): GetStatistics answers zeros. GetNumDroppedTriangles counts either way.
  *
  * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
@@ -78,7 +89,7 @@
 #endif
 
 /* The switches as the template argument of Create. Bits 0 and 1: MOC_UpdateRule; 2: MOC_YAxis; 3: precise
- * coverage; 4: AVX2 at most; 5: statistics. */
+ * coverage; 4: AVX2 at most; 5: statistics; 6: exceptions. */
 #if MOC_FOUR_LAYERS
 #define MOC_DETAIL_RULE 3u
 #elif !defined(QUICK_MASK)
@@ -110,47 +121,22 @@
 #else
 #define MOC_DETAIL_STATS 0u
 #endif
-#define MOC_DETAIL_SWITCHES \
-    (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP | MOC_DETAIL_STATS)
+#define MOC_DETAIL_SWITCHES                                                                            \
+    (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP | MOC_DETAIL_STATS |    \
+     (MOC_DETAIL_EXCEPTIONS ? 64u : 0u))
 
 #include "moc_names.h"
 
 MOC_NAMESPACE_BEGIN
 
-/*
- * The instruction sets, as members of the class below. SCALAR, NEON and SIMD128 are constants, not enumerators: a program that
- * was written before there were these names all four in a switch, and would be warned of the others. A switch that has
- * them needs a variable of type int. The template is for their definitions, which C++11 wants in one place.
- */
-template <class Unused> struct MOC_DetailImplementations
-{
-    /** An instruction set. All of them give the same bits. */
-    enum Implementation : int
-    {
-        SSE2   = MOC_SSE2,
-        SSE41  = MOC_SSE41,
-        AVX2   = MOC_AVX2,
-        AVX512 = MOC_AVX512
-    };
-    static constexpr Implementation SCALAR  = static_cast<Implementation>(MOC_SCALAR);
-    static constexpr Implementation NEON    = static_cast<Implementation>(MOC_NEON);
-    static constexpr Implementation SIMD128 = static_cast<Implementation>(MOC_SIMD128);
-};
-
-#if __cplusplus < 201703L
-template <class Unused>
-constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::SCALAR;
-template <class Unused>
-constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::NEON;
-template <class Unused>
-constexpr typename MOC_DetailImplementations<Unused>::Implementation MOC_DetailImplementations<Unused>::SIMD128;
-#endif
-
 /** A masked hierarchical depth buffer to draw occluders into and to test occludees against. */
 class MaskedOcclusionCulling : public MOC_DetailImplementations<void>
 {
 public:
-    /** Allocates `size` bytes at a multiple of `alignment`; null when there is no memory. Must not throw. */
+    /**
+     * Allocates `size` bytes at a multiple of `alignment`; null when there is no memory. What it throws, Create and
+     * SetResolution throw again, where they are compiled with exceptions; without, it must not throw.
+     */
     typedef void *(*pfnAlignedAlloc)(size_t alignment, size_t size);
     /** Frees what pfnAlignedAlloc gave. Must not throw. */
     typedef void (*pfnAlignedFree)(void *ptr);
@@ -222,8 +208,7 @@ public:
         float *mPtr;                /**< 9 floats a triangle */
     };
 
-    /** Counts since the object was made with ENABLE_STATS 1 (without: of dropped triangles only), the same on every
-     * instruction set. */
+    /** Counts since the object was made with ENABLE_STATS 1 (without: zeros), the same on every instruction set. */
     struct OcclusionCullingStatistics
     {
         struct
@@ -236,7 +221,6 @@ public:
             long long mNumTilesTraversed;
             long long mNumTilesUpdated;        /**< tiles in which one changed, or could have changed, a sub-tile */
             long long mNumTilesMerged;         /**< tiles in which a reference depth rose */
-            long long mNumDroppedTriangles;    /**< dropped for a NaN, an infinity or a distance beyond 2^40 */
         } mOccluders;
 
         struct
@@ -260,7 +244,7 @@ public:
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(Implementation RequestedSIMD = AVX512)
     {
-        return CreateWith(Switches, RequestedSIMD, nullptr, nullptr);
+        return CreateWith<Switches>(RequestedSIMD, nullptr, nullptr);
     }
 
     /** The same, with all memory of the object, itself included, from the two callbacks (both or neither null). */
@@ -268,16 +252,45 @@ public:
     static MaskedOcclusionCulling *Create(Implementation RequestedSIMD, pfnAlignedAlloc alignedAlloc,
                                           pfnAlignedFree alignedFree)
     {
-        return CreateWith(Switches, RequestedSIMD, alignedAlloc, alignedFree);
+        return CreateWith<Switches>(RequestedSIMD, alignedAlloc, alignedFree);
+    }
+
+    /** The same, as in 2016, when there was no argument for the instruction set. */
+    template <unsigned int Switches = MOC_DETAIL_SWITCHES>
+    static MaskedOcclusionCulling *Create(pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
+    {
+        return CreateWith<Switches>(AVX512, alignedAlloc, alignedFree);
+    }
+
+    /**
+     * The MOC_Status of the last call that this thread made, of any object or pool: MOC_STATUS_OK, or why it was refused.
+     * It is the thread's and not the object's, since several threads may query one object, and since there is none where
+     * Create answers null. MOC_StatusText puts it into words.
+     */
+    static int GetLastStatus() { return MOC_GetLastStatus(); }
+
+    /**
+     * From now on a function is told what was refused and why, of any object or pool in the process, and of rectangles whose
+     * minimum is above their maximum, or that have a NaN; null: nobody is told, as at first. It is called on the thread that
+     * made the call, and must not throw. MOC_MessageCallback says more.
+     */
+    static void SetMessageCallback(MOC_MessageCallback callback, void *user = nullptr)
+    {
+        MOC_SetMessageCallback(callback, user);
     }
 
     /** Frees the object and its buffer. Null is allowed. There is no `delete`. */
     static void Destroy(MaskedOcclusionCulling *moc) { MOC_Destroy(moc); }
 
-    /** Gives the object a cleared buffer, 1 to 16384 pixels each way; refused sizes keep the old one. */
-    void SetResolution(unsigned int width, unsigned int height)
+    /**
+     * Gives the object a cleared buffer, 1 to 16384 pixels each way. Where the size is refused, or there is no memory, it
+     * keeps the one that it had.
+     */
+    MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {
+        MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;
         Direct([&] { return MOC_SetResolution(this, width, height); });
+        allocation.ThrowAgain();
     }
 
     /** The size of the buffer in pixels; 0 by 0 without one. */
@@ -445,12 +458,22 @@ public:
         stats.mOccluders.mNumTilesTraversed = s.occluders.num_tiles_traversed;
         stats.mOccluders.mNumTilesUpdated = s.occluders.num_tiles_updated;
         stats.mOccluders.mNumTilesMerged = s.occluders.num_tiles_merged;
-        stats.mOccluders.mNumDroppedTriangles = s.occluders.num_dropped_triangles;
         stats.mOccludees.mNumProcessedRectangles = s.occludees.num_processed_rectangles;
         stats.mOccludees.mNumProcessedTriangles = s.occludees.num_processed_triangles;
         stats.mOccludees.mNumRasterizedTriangles = s.occludees.num_rasterized_triangles;
         stats.mOccludees.mNumTilesTraversed = s.occludees.num_tiles_traversed;
         return stats;
+    }
+
+    /**
+     * How many triangles draws dropped since the object was made, for a NaN, an infinity or a distance beyond 2^40; counted
+     * whatever ENABLE_STATS says. Not in the library that this header stands in for.
+     */
+    long long GetNumDroppedTriangles() const
+    {
+        int64_t dropped = 0;
+        MOC_GetDroppedTriangles(this, &dropped);
+        return dropped;
     }
 
     /** The instruction set in use. */
@@ -517,8 +540,9 @@ private:
             MOC_Flush(this);
     }
 
-    static MaskedOcclusionCulling *CreateWith(unsigned int switches, Implementation implementation,
-                                              pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
+    template <unsigned int Switches>
+    static MaskedOcclusionCulling *CreateWith(Implementation implementation, pfnAlignedAlloc alignedAlloc,
+                                              pfnAlignedFree alignedFree)
     {
         const unsigned int library = MOC_GetAbiVersion(), header = MOC_ABI_VERSION;
         const bool stable = header >= 1000;
@@ -526,15 +550,19 @@ private:
             return nullptr;
         MOC_Settings settings;
         MOC_DefaultSettings(&settings);
-        settings.implementation = (switches & 16u) != 0 && implementation == AVX512 ? AVX2 : implementation;
-        settings.update_rule = static_cast<int32_t>(switches & 3u);
-        settings.y_axis = (switches & 4u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
-        settings.precise_coverage = (switches & 8u) != 0 ? 1 : 0;
-        settings.statistics = (switches & 32u) != 0 ? 1 : 0;
+        settings.implementation = (Switches & 16u) != 0 && implementation == AVX512 ? AVX2 : implementation;
+        settings.update_rule = static_cast<int32_t>(Switches & 3u);
+        settings.y_axis = (Switches & 4u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
+        settings.precise_coverage = (Switches & 8u) != 0 ? 1 : 0;
+        settings.statistics = (Switches & 32u) != 0 ? 1 : 0;
         settings.alloc = alignedAlloc;
         settings.free = alignedFree;
+        typedef MOC_DetailAllocation<(Switches & 64u) != 0> Allocation;
+        settings.call_alloc = Allocation::Caller();
+        Allocation allocation;
         MaskedOcclusionCulling *moc = nullptr;
         MOC_Create(&settings, &moc);
+        allocation.ThrowAgain();
         return moc;
     }
 
@@ -550,6 +578,11 @@ static_assert(sizeof(MaskedOcclusionCulling::TriList) == sizeof(MOC_TriList) &&
                   offsetof(MaskedOcclusionCulling::TriList, mPtr) == offsetof(MOC_TriList, data),
               "a TriList is passed to the C functions as it is");
 
+static_assert(sizeof(MaskedOcclusionCulling::OcclusionCullingStatistics) == 72 && sizeof(MOC_Statistics) == 72,
+              "programs copy the statistics by offset");
+
 MOC_NAMESPACE_END
+
+} /* extern "C++" */
 
 #include "moc_names_end.h"

@@ -55,10 +55,11 @@
  *   x, y         any finite number. A NaN or an infinity drops an occluder's triangle, and makes an occludee visible.
  *   triangles    0 to INT32_MAX a call; indices have 32 bits and no sign.
  *
- * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion and MOC_StatusText. Where it is not
+ * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion, MOC_StatusText and MOC_GetLastStatus. Where it is not
  * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
  * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
- * passed as int32_t and checked.
+ * passed as int32_t and checked. MOC_GetLastStatus has the status of the thread's last call for who did not keep it, and
+ * MOC_SetMessageCallback takes a function that is told which argument was refused, and why.
  *
  * Null. A pointer may be null where the function says so. Where it may not, null is refused with
  * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
@@ -78,6 +79,20 @@
  * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once. While a pool
  * draws into an object, any thread may query that object; what would change or copy its buffer is refused
  * (MOC_STATUS_BUSY) until MOC_Flush.
+ *
+ * Traps
+ *   floating point   A call computes to nearest, with denormal numbers and without traps, whatever the thread is set to, and
+ *                    leaves the thread as it was: the same bits with any rounding mode, and no SIGFPE. It may leave exception
+ *                    flags behind (fetestexcept) where the thread has the default settings. On processors other than x86 with
+ *                    SSE and aarch64 nothing is set: there results hold for rounding to nearest.
+ *   stack            A draw or a test of triangles needs up to 59 KB of stack (64 KB in a build without optimisation),
+ *                    MOC_BinTriangles 42, MOC_RenderTrilist 33, MOC_TestRect and the others less than 5. Fibers of 64 KB are too
+ *                    small for the first two once their own frames are counted: give them 96 or more.
+ *   transforming     MOC_TransformVertices in place is not supported: 16 bytes go out for each vertex, and where fewer come in it
+ *                    would overwrite vertices that it has not read yet.
+ *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it until it ends, the main thread
+ *                    for good. That is safe; but the same path loaded again is the old library, not a new build of it.
+ *   allocation       The callbacks of MOC_Settings must not throw; MOC_CallAlloc is for those that do.
  *
  * Where to go from here
  *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
@@ -462,6 +477,17 @@ typedef struct MOC_Recording MOC_Recording;
 typedef struct MOC_Threadpool MOC_Threadpool;
 
 /**
+ * Is told of a call that was refused, or that did something else than was perhaps meant: `message` names the function, the
+ * argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
+ *
+ * `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK where
+ * it was not refused. `message` is English and read during the call only. Called on the thread that made the call, from
+ * several at once if they are refused at once, and while the library holds no lock of its own. It may call the library; what is
+ * refused of that is not told. It must not throw or jump out.
+ */
+typedef void (*MOC_MessageCallback)(void *user, int32_t status, const char *message);
+
+/**
  * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
  * for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
  * that uses the object; must not throw.
@@ -472,6 +498,12 @@ typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
  * Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
  */
 typedef void (*MOC_AlignedFree)(void *ptr);
+
+/**
+ * Calls `alloc(alignment, size)` and returns what it gave, for languages whose allocators throw: nothing may be thrown into the
+ * library, so that it catches, and returns null. It is called wherever `alloc` would be.
+ */
+typedef void *(*MOC_CallAlloc)(MOC_AlignedAlloc alloc, size_t alignment, size_t size);
 
 /**
  * What an object is made with. Fill it with MOC_DefaultSettings first, then change what matters.
@@ -495,8 +527,8 @@ typedef struct MOC_Settings {
      */
     int32_t precise_coverage;
     /**
-     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: of
-     * all counts only that of dropped triangles is kept. Default 0.
+     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: only
+     * MOC_GetDroppedTriangles counts. Default 0.
      */
     int32_t statistics;
     /**
@@ -508,6 +540,11 @@ typedef struct MOC_Settings {
      * Takes back what `alloc` gave. Null exactly when `alloc` is.
      */
     MOC_AlignedFree free;
+    /**
+     * Calls `alloc` in place of the library, where that has to be prepared for what it does. Null: the library calls it.
+     * Without `alloc` of no effect. Default null.
+     */
+    MOC_CallAlloc call_alloc;
 } MOC_Settings;
 
 /**
@@ -600,10 +637,6 @@ typedef struct MOC_OccluderStatistics {
      * Tiles in which a reference depth rose.
      */
     int64_t num_tiles_merged;
-    /**
-     * Triangles dropped for a NaN, an infinite coordinate, or a distance beyond 2^40.
-     */
-    int64_t num_dropped_triangles;
 } MOC_OccluderStatistics;
 
 /**
@@ -629,8 +662,8 @@ typedef struct MOC_OccludeeStatistics {
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object, if its settings ask for statistics; else that of dropped triangles alone, and zeros. The same
- * on every instruction set.
+ * All counts of an object, if its settings ask for statistics; else zeros. The same on every instruction set. The 72 bytes
+ * are those of Intel's struct, and stay so; other counts have functions of their own, as MOC_GetDroppedTriangles.
  */
 typedef struct MOC_Statistics {
     /**
@@ -787,6 +820,27 @@ uint32_t MOC_GetAbiVersion(void);
  * A status in English, for logs. Never null; the text lives as long as the library is loaded.
  */
 const char *MOC_StatusText(int32_t status);
+
+/**
+ * From now on calls that are refused, on any thread and with any object or pool, are told to `callback`, with `user` as its first
+ * argument; null: nobody is told, as at first. One callback serves the whole process.
+ *
+ * When it returns, another thread may still be in the callback that was there before.
+ *
+ * Errors: none.
+ *
+ * Required:
+ * `callback` is null or does what MOC_MessageCallback says, with `user`, on any thread, until it is replaced and every call that
+ * began before that has returned.
+ */
+MOC_Status MOC_SetMessageCallback(MOC_MessageCallback callback,
+                                  void *user);
+
+/**
+ * The MOC_Status of the last call that the calling thread made, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText
+ * and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first.
+ */
+int32_t MOC_GetLastStatus(void);
 
 /**
  * Writes the default settings to `out`: those that MOC_Create takes for null.
@@ -1117,7 +1171,8 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
  * - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
  * - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
  *   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
- *   a minimum is above its maximum, and on errors.
+ *   a minimum is above its maximum, and on errors. NaN and such a minimum are told to the callback of
+ *   MOC_SetMessageCallback, though the status is MOC_STATUS_OK.
  *
  * Several threads may test at once.
  *
@@ -1173,6 +1228,18 @@ MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
  */
 MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
                              struct MOC_Statistics *out);
+
+/**
+ * Writes how many triangles draws dropped since the object was made, for a NaN, an infinite coordinate, or a distance beyond
+ * 2^40. They are counted whether or not the settings ask for statistics.
+ *
+ * Errors: MOC_STATUS_NULL_POINTER.
+ *
+ * Required:
+ * As MOC_GetStatistics.
+ */
+MOC_Status MOC_GetDroppedTriangles(const MaskedOcclusionCulling *moc,
+                                   int64_t *out);
 
 /**
  * Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be

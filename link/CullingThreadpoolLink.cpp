@@ -84,7 +84,9 @@ void CullingThreadpool::SetBuffer(MaskedOcclusionCulling *moc)
 
 void CullingThreadpool::SetResolution(unsigned int width, unsigned int height)
 {
+    moc_link::Allocation allocation;
     MOC_ThreadpoolSetResolution(PoolOf(mRenderQueue), width, height);
+    allocation.ThrowAgain();
 }
 
 void CullingThreadpool::SetNearClipPlane(float nearDist)

@@ -8,7 +8,7 @@
 
 // The C header calls its opaque objects as the class is called, which here is something else.
 #define MaskedOcclusionCulling MOC_LinkedObject
-#include "../include/masked_occlusion_culling.h"
+#include "../include/MaskedOcclusionCullingAllocation.h"
 #undef MaskedOcclusionCulling
 
 // To the end of the file that includes this one, MOC_Create stands for what MOC_SYMBOL_PREFIX makes of it.
@@ -19,6 +19,9 @@ namespace moc_link
 
 /** The library's object in one that MaskedOcclusionCulling::Create made; null for null. */
 MOC_LinkedObject *ObjectOf(const MaskedOcclusionCulling *moc);
+
+/** See MaskedOcclusionCullingAllocation.h. */
+typedef MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> Allocation;
 
 /** Whether the library that was linked is of the version of the C header. */
 inline bool LibraryFits()

@@ -22,7 +22,7 @@
  *
  * GetImplementation answers SSE2 for what that header has no name for: scalar code, NEON and simd128.
  *
- * C++11; nothing here throws or needs run-time type information.
+ * C++11; nothing here needs run-time type information, or throws but what an allocation callback throws.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -107,7 +107,9 @@ public:
 
     void SetResolution(unsigned int width, unsigned int height) override
     {
+        moc_link::Allocation allocation;
         Direct([&] { return MOC_SetResolution(mObject, width, height); });
+        allocation.ThrowAgain();
     }
 
     void GetResolution(unsigned int &width, unsigned int &height) const override
@@ -309,18 +311,24 @@ MaskedOcclusionCulling *MaskedOcclusionCulling::Create(Implementation RequestedS
     settings.statistics = ENABLE_STATS ? 1 : 0;
     settings.alloc = alignedAlloc;
     settings.free = alignedFree;
+    settings.call_alloc = moc_link::Allocation::Caller();
+    moc_link::Allocation allocation;
     MOC_LinkedObject *object = nullptr;
     if (MOC_Create(&settings, &object) != MOC_STATUS_OK)
+    {
+        allocation.ThrowAgain();
         return nullptr;
+    }
 
     // The object around it comes from where its own memory does: where no callbacks are given, from the library's.
     MOC_GetAllocFreeCallback(object, &alignedAlloc, &alignedFree);
-    void *memory = alignedAlloc(ALIGNMENT, (sizeof(Linked) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
+    void *memory = moc_link::Allocation::Call(alignedAlloc, ALIGNMENT, (sizeof(Linked) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
     if (memory != nullptr && reinterpret_cast<uintptr_t>(memory) % alignof(Linked) == 0)
         return new (memory) Linked(object, alignedAlloc, alignedFree);
     if (memory != nullptr)
         alignedFree(memory);
     MOC_Destroy(object);
+    allocation.ThrowAgain();
     return nullptr;
 }
 

@@ -11,15 +11,20 @@ pub type AlignedAlloc = unsafe extern "C" fn(alignment: usize, size: usize) -> *
 /// Frees what [`AlignedAlloc`] gave.
 pub type AlignedFree = unsafe extern "C" fn(ptr: *mut c_void);
 
+/// Calls an [`AlignedAlloc`], where something has to be done around it.
+pub(crate) type CallAlloc =
+    unsafe extern "C" fn(alloc: Option<AlignedAlloc>, alignment: usize, size: usize) -> *mut c_void;
+
 /// Where an object's memory comes from.
 #[derive(Clone, Copy, Default)]
 pub struct Allocator {
     callbacks: Option<(AlignedAlloc, AlignedFree)>,
+    call_alloc: Option<CallAlloc>,
 }
 
 impl Allocator {
     /// The system's allocator.
-    pub const SYSTEM: Self = Self { callbacks: None };
+    pub const SYSTEM: Self = Self { callbacks: None, call_alloc: None };
 
     /// The caller's own.
     ///
@@ -27,7 +32,15 @@ impl Allocator {
     /// `alloc` returns null or memory of that size and alignment that is nobody else's until it is
     /// passed to `free`; both may be called from any thread that uses the object.
     pub const unsafe fn from_callbacks(alloc: AlignedAlloc, free: AlignedFree) -> Self {
-        Self { callbacks: Some((alloc, free)) }
+        Self { callbacks: Some((alloc, free)), call_alloc: None }
+    }
+
+    /// The same, whose `alloc` is called by `call`, if that is given.
+    ///
+    /// # Safety
+    /// `call` gives what `alloc` gave, or null, and may be called as `alloc` may.
+    pub(crate) const unsafe fn called_through(self, call: Option<CallAlloc>) -> Self {
+        Self { call_alloc: call, ..self }
     }
 
     /// The callbacks, where there are any.
@@ -38,11 +51,13 @@ impl Allocator {
     /// Memory for `layout` (not empty); its contents are undefined.
     pub(crate) fn allocate(&self, layout: Layout) -> Result<NonNull<u8>, Error> {
         assert!(layout.size() > 0);
-        let ptr = match self.callbacks {
+        let ptr = match (self.callbacks, self.call_alloc) {
             // SAFETY: the layout is not empty, by the assertion above.
-            None => unsafe { std::alloc::alloc(layout) },
+            (None, _) => unsafe { std::alloc::alloc(layout) },
             // SAFETY: whoever called `from_callbacks` vouched for the callback.
-            Some((alloc, _)) => unsafe { alloc(layout.align(), layout.size()).cast() },
+            (Some((alloc, _)), None) => unsafe { alloc(layout.align(), layout.size()).cast() },
+            // SAFETY: whoever called `called_through` vouched for this one.
+            (Some((alloc, _)), Some(call)) => unsafe { call(Some(alloc), layout.align(), layout.size()).cast() },
         };
         let ptr = NonNull::new(ptr).ok_or(Error::OutOfMemory)?;
         if !(ptr.as_ptr() as usize).is_multiple_of(layout.align()) {

@@ -24,6 +24,7 @@ mod buffer;
 pub mod capi;
 mod culling;
 mod error;
+mod float_environment;
 mod pipeline;
 mod pool;
 mod recorder;

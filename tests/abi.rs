@@ -42,13 +42,15 @@ fn of_the_library() -> List {
     list.insert("MOC_ABI_VERSION".into(), Some(MOC_ABI_VERSION.into()));
     list.insert("MOC_RESULT_UNKNOWN".into(), Some(MOC_RESULT_UNKNOWN.into()));
     structs! { list:
-        MOC_Settings { implementation update_rule y_axis precise_coverage statistics alloc free }
+        MOC_Settings { implementation update_rule y_axis precise_coverage statistics alloc free call_alloc }
+        MOC_ThreadpoolSettings {
+            size threads bins_w bins_h max_jobs processors external_threads reserved thread_name thread_start user
+        }
         MOC_VertexLayout { stride offset_y offset_zw }
         MOC_ScissorRect { min_x min_y max_x max_y }
         MOC_TriList { capacity count data }
         MOC_OccluderStatistics {
             num_processed_triangles num_rasterized_triangles num_tiles_traversed num_tiles_updated num_tiles_merged
-            num_dropped_triangles
         }
         MOC_OccludeeStatistics {
             num_processed_rectangles num_processed_triangles num_rasterized_triangles num_tiles_traversed

@@ -32,6 +32,16 @@ const SWITCHES: Program = Program {
     cpp: true,
 };
 const STATISTICS: Program = Program { name: "statistics", sources: &["statistics.cpp"], cpp: true };
+const STATISTICS_LAYOUT: Program =
+    Program { name: "statistics_layout", sources: &["statistics_layout.cpp"], cpp: true };
+const THROWING_ALLOCATOR: Program = Program {
+    name: "throwing_allocator",
+    sources: &["throwing_allocator.cpp", "throwing_allocator_none.cpp"],
+    cpp: true,
+};
+const FLOAT_ENVIRONMENT: Program =
+    Program { name: "float_environment", sources: &["float_environment.cpp"], cpp: true };
+const MESSAGES: Program = Program { name: "messages", sources: &["messages.cpp"], cpp: true };
 const THEIR_PROGRAMS: Program = Program { name: "their_programs", sources: &["their_programs.cpp"], cpp: true };
 const THREADS: Program = Program { name: "threads", sources: &["threads.cpp"], cpp: true };
 const THREAD_POOL: Program = Program { name: "thread_pool", sources: &["thread_pool.cpp"], cpp: true };
@@ -103,8 +113,12 @@ programs! {
     all_functions_static: ALL_FUNCTIONS, Library::Static;
     exact_arrays_shared: EXACT_ARRAYS, Library::Shared;
     exact_arrays_static: EXACT_ARRAYS, Library::Static;
+    float_environment_shared: FLOAT_ENVIRONMENT, Library::Shared;
+    float_environment_static: FLOAT_ENVIRONMENT, Library::Static;
     hostile_shared: HOSTILE, Library::Shared;
     hostile_static: HOSTILE, Library::Static;
+    messages_shared: MESSAGES, Library::Shared;
+    messages_static: MESSAGES, Library::Static;
     peer_style_shared: PEER_STYLE, Library::Shared;
     peer_style_static: PEER_STYLE, Library::Static;
     pool_contract_shared: POOL_CONTRACT, Library::Shared;
@@ -115,6 +129,8 @@ programs! {
     recorder_static: RECORDER, Library::Static;
     statistics_shared: STATISTICS, Library::Shared;
     statistics_static: STATISTICS, Library::Static;
+    statistics_layout_shared: STATISTICS_LAYOUT, Library::Shared;
+    statistics_layout_static: STATISTICS_LAYOUT, Library::Static;
     switches_shared: SWITCHES, Library::Shared;
     switches_static: SWITCHES, Library::Static;
     their_programs_shared: THEIR_PROGRAMS, Library::Shared;
@@ -123,6 +139,8 @@ programs! {
     thread_pool_static: THREAD_POOL, Library::Static;
     thread_pool_c_shared: THREAD_POOL_C, Library::Shared;
     thread_pool_c_static: THREAD_POOL_C, Library::Static;
+    throwing_allocator_shared: THROWING_ALLOCATOR, Library::Shared;
+    throwing_allocator_static: THROWING_ALLOCATOR, Library::Static;
     threads_shared: THREADS, Library::Shared;
     threads_static: THREADS, Library::Static;
 }
@@ -164,6 +182,11 @@ fn pool_contract_under_sanitizers() {
 #[test]
 fn pool_threads_under_sanitizers() {
     under_sanitizers(&POOL_THREADS);
+}
+
+#[test]
+fn throwing_allocator_under_sanitizers() {
+    under_sanitizers(&THROWING_ALLOCATOR);
 }
 
 #[test]

@@ -15,6 +15,7 @@ fn the_shared_library_exports_the_header_and_nothing_else() {
         .filter(|line| {
             line.starts_with("MOC_Status MOC_")
                 || line.starts_with("uint32_t MOC_")
+                || line.starts_with("int32_t MOC_")
                 || line.starts_with("const char *MOC_")
         })
         .filter_map(|line| line.split('(').next()?.rsplit([' ', '*']).next())

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::Path;
 
 /// The files that export functions or define their types, in the order of the header.
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 12] = [
     "status",
+    "messages",
     "types",
     "lifecycle",
     "callbacks",

@@ -53,6 +53,11 @@ fn with_every_switch_the_other_way() {
 }
 
 #[test]
+fn with_callbacks_that_throw() {
+    run("abstract_throwing.cpp", &[], &[CLASS, POOL]);
+}
+
+#[test]
 fn with_four_layers() {
     run("abstract_class.cpp", &[("MOC_FOUR_LAYERS", "1")], &[CLASS, POOL]);
     let switches = [("MOC_FOUR_LAYERS", "1"), ("QUICK_MASK", "0"), ("USE_AVX512", "0")];

@@ -65,6 +65,7 @@ impl Family {
                 statistics: statistics.into(),
                 alloc,
                 free,
+                call_alloc: None,
             };
             let (mut moc, mut used) = (null_mut(), 0);
             // SAFETY: the settings and the place for the object are valid, the callbacks are an allocator.

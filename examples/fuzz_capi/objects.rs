@@ -17,16 +17,18 @@ impl Driver<'_> {
         self.settle(which)?;
         let family = &self.families[which];
         family.all("GetStatistics", |_, moc| {
-            let mut counts = [0i64; 10];
+            let (mut counts, mut dropped) = ([0i64; 9], 0);
             assert_eq!(size_of::<MOC_Statistics>(), size_of_val(&counts));
-            // SAFETY: a live object; the struct is ten 64-bit integers.
+            // SAFETY: a live object; the struct is nine 64-bit integers.
             let status = unsafe { MOC_GetStatistics(moc, counts.as_mut_ptr().cast()) } as i32;
-            let status = if counts.iter().any(|c| *c < 0) { -1 } else { status };
+            // SAFETY: a live object, and a place for the answer.
+            let status = status.max(unsafe { MOC_GetDroppedTriangles(moc, &mut dropped) } as i32);
+            let status = if counts.iter().any(|c| *c < 0) || dropped < 0 { -1 } else { status };
             if family.asked_early {
                 // Triangles and tiles that queries looked at.
-                counts[8..].fill(0);
+                counts[7..].fill(0);
             }
-            (status, counts)
+            (status, (counts, dropped))
         })?;
         Ok(())
     }
@@ -74,6 +76,7 @@ impl Driver<'_> {
             statistics: hostile::enumeration(rng, &[0, 1, 2]),
             alloc: Some(memory::alloc),
             free: Some(memory::free),
+            call_alloc: None,
         };
         match rng.u8(..4) {
             0 => settings.alloc = None,
@@ -129,6 +132,8 @@ impl Driver<'_> {
                 MOC_ComputePixelDepthBuffer(null(), &mut f, 0),
                 MOC_GetStatistics(null(), null_mut()),
                 MOC_GetStatistics(moc, null_mut()),
+                MOC_GetDroppedTriangles(null(), null_mut()),
+                MOC_GetDroppedTriangles(moc, null_mut()),
                 MOC_GetImplementation(null(), &mut i),
                 MOC_GetImplementation(moc, null_mut()),
                 MOC_GetUpdateRule(null(), &mut i),

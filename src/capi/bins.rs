@@ -1,11 +1,13 @@
 //! Sorting triangles into the lists of bins.
 
+use super::lifecycle::BINS;
 use super::mesh::MeshArguments;
 use super::pointers::{check_length, object, slice_mut};
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard_result};
 use super::types::{MOC_TriList, MOC_VertexLayout};
 use crate::bins::FLOATS_PER_TRIANGLE;
-use crate::{Error, MaskedOcclusionCulling, TriList};
+use crate::{CullingResult, Error, MaskedOcclusionCulling, TriList};
 
 /// The lists of the bins, in C's form.
 struct BinArguments {
@@ -57,7 +59,7 @@ pub unsafe extern "C" fn MOC_BinTriangles(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { bin(moc, mesh, BinArguments { lists, bins_w, bins_h }, result) }
+    unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
 }
 
 /// As MOC_BinTriangles, with the length of the vertex array in floats: an index that names a vertex outside
@@ -94,7 +96,7 @@ pub unsafe extern "C" fn MOC_BinTrianglesChecked(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { bin(moc, mesh, BinArguments { lists, bins_w, bins_h }, result) }
+    unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
 }
 
 /// # Safety
@@ -103,29 +105,25 @@ unsafe fn bin(
     moc: *const MaskedOcclusionCulling,
     mesh: MeshArguments,
     bins: BinArguments,
-    result: *mut i32,
-) -> MOC_Status {
-    let append = || {
-        let BinArguments { lists, bins_w, bins_h } = bins;
-        // SAFETY: the caller's contract.
-        let moc = unsafe { object(moc) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { mesh.check(moc) }?;
-        if lists.is_null() {
-            return Err(Error::NullPointer);
-        }
-        // Bounds the product of the counts before any list is looked at.
-        moc.compute_bin_size(bins_w, bins_h)?;
-        let count = bins_w as usize * bins_h as usize;
-        // SAFETY: the caller's contract; the two structs are laid out the same.
-        let lists = unsafe { slice_mut(lists.cast::<TriList<'_>>(), count) }?;
-        if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
-            return Err(Error::NullPointer);
-        }
-        lists.iter().try_for_each(|list| check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.capacity as usize))?;
-        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }
-    };
+) -> Result<CullingResult, Refusal> {
+    let BinArguments { lists, bins_w, bins_h } = bins;
     // SAFETY: the caller's contract.
-    unsafe { guard_result(result, append) }
+    let moc = unsafe { object(moc) }?;
+    // SAFETY: the caller's contract.
+    let mesh = unsafe { mesh.check(moc) }?;
+    if lists.is_null() {
+        return Err(Refusal::new(Error::NullPointer, "lists is null"));
+    }
+    // Bounds the product of the counts before any list is looked at.
+    moc.compute_bin_size(bins_w, bins_h).because(Error::InvalidSize, BINS)?;
+    let count = bins_w as usize * bins_h as usize;
+    // SAFETY: the caller's contract; the two structs are laid out the same.
+    let lists = unsafe { slice_mut(lists.cast::<TriList<'_>>(), count) }
+        .because(Error::InvalidLayout, "lists is not at a multiple of its alignment")?;
+    if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
+        return Err(Refusal::new(Error::NullPointer, "a list has a capacity and no data"));
+    }
+    lists.iter().try_for_each(|list| check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.capacity as usize))?;
+    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+    Ok(unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }?)
 }

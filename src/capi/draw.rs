@@ -2,10 +2,13 @@
 
 use super::mesh::MeshArguments;
 use super::pointers::{check_length, object, object_mut, objects, read};
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
 use crate::bins::FLOATS_PER_TRIANGLE;
-use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
+use crate::{CullingResult, Error, MaskedOcclusionCulling, ScissorRect, TriList};
+
+const EMPTY: &str = "one of the objects has no buffer: call MOC_SetResolution first";
 
 /// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
 ///
@@ -16,7 +19,7 @@ use crate::{Error, MaskedOcclusionCulling, ScissorRect, TriList};
 #[unsafe(export_name = symbol!(MOC_ClearBuffer))]
 pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object_mut(moc) }?.clear_buffer())
+    guard(|| Ok(unsafe { object_mut(moc) }?.clear_buffer()?))
 }
 
 /// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
@@ -36,11 +39,13 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
     guard(|| {
         if core::ptr::eq(moc, other) {
             // SAFETY: the caller's contract. No second reference to the same object is made.
-            return unsafe { object(other) }?.resolution().map(|_| ()).ok_or(Error::NoBuffer);
+            return Ok(unsafe { object(other) }?.resolution().map(|_| ()).ok_or(Error::NoBuffer)?);
         }
         // SAFETY: the caller's contract, and the two are not the same.
-        let (moc, other) = unsafe { (object_mut(moc)?, object(other)?) };
-        moc.merge_buffer(other)
+        let moc = unsafe { object_mut(moc) }?;
+        // SAFETY: as above.
+        let other = unsafe { object(other) }.because(Error::NullPointer, "the other object is null")?;
+        moc.merge_buffer(other).because(Error::NoBuffer, EMPTY)
     })
 }
 
@@ -63,7 +68,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
         let mut others = unsafe { objects(others, count) }?;
         others.retain(|&other| !core::ptr::eq(other, moc));
         // SAFETY: the caller's contract, and none of the others is the same.
-        unsafe { object_mut(moc) }?.merge_buffers(&others)
+        unsafe { object_mut(moc) }?.merge_buffers(&others).because(Error::NoBuffer, EMPTY)
     })
 }
 
@@ -116,7 +121,7 @@ pub unsafe extern "C" fn MOC_RenderTriangles(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { render(moc, mesh, result) }
+    unsafe { guard_result(result, || render(moc, mesh)) }
 }
 
 /// As MOC_RenderTriangles, with the length of the vertex array, counted in floats from `vertices` on: an index that names a
@@ -152,22 +157,18 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { render(moc, mesh, result) }
+    unsafe { guard_result(result, || render(moc, mesh)) }
 }
 
 /// # Safety
 /// As MOC_RenderTriangles, and [`MeshArguments::check`].
-unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments, result: *mut i32) -> MOC_Status {
-    let draw = || {
-        // SAFETY: the caller's contract.
-        let moc = unsafe { object_mut(moc) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { mesh.check(moc) }?;
-        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        unsafe { moc.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
-    };
+unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments) -> Result<CullingResult, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { guard_result(result, draw) }
+    let moc = unsafe { object_mut(moc) }?;
+    // SAFETY: the caller's contract.
+    let mesh = unsafe { mesh.check(moc) }?;
+    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+    Ok(unsafe { moc.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
 }
 
 /// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
@@ -195,20 +196,24 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
         // SAFETY: the caller's contract. Drawing changes the buffer through cells that any `&` may write.
         let moc = unsafe { object(moc) }?;
         if !list.is_null() && !list.is_aligned() {
-            return Err(Error::InvalidLayout);
+            return Err(Refusal::new(Error::InvalidLayout, "the list is not at a multiple of its alignment"));
         }
+        const NO_LIST: Refusal = Refusal::new(Error::NullPointer, "the list is null");
         // SAFETY: null or aligned; the caller's contract; the two structs are laid out the same.
-        let list = unsafe { list.cast::<TriList<'_>>().as_ref() }.ok_or(Error::NullPointer)?;
+        let list = unsafe { list.cast::<TriList<'_>>().as_ref() }.ok_or(NO_LIST)?;
         if list.len > list.capacity {
-            return Err(Error::InvalidSize);
+            return Err(Refusal::new(Error::InvalidSize, "the list has a count above its capacity"));
         }
         if list.len > 0 && list.data.is_null() {
-            return Err(Error::NullPointer);
+            return Err(Refusal::new(Error::NullPointer, "the list has triangles and no data"));
         }
         check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.len as usize)?;
         // SAFETY: the caller's contract.
         let scissor = unsafe { read(scissor) }.map(ScissorRect::from);
         // SAFETY: the caller's contract: exclusive inside of the rectangle.
-        unsafe { moc.render_trilist_shared(list, scissor) }
+        unsafe { moc.render_trilist_shared(list, scissor) }.because(
+            Error::InvalidSize,
+            "the scissor rectangle is empty, beyond the buffer, or not in multiples of 32 and 8 pixels",
+        )
     })
 }

@@ -3,6 +3,7 @@
 use std::alloc::Layout;
 
 use super::pointers::{check_out, object, object_mut, read, write, write_size};
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_Implementation, MOC_Settings, MOC_UpdateRule, MOC_YAxis};
 use crate::{Allocator, Error, MaskedOcclusionCulling, Settings};
@@ -15,6 +16,7 @@ const DEFAULTS: MOC_Settings = MOC_Settings {
     statistics: 0,
     alloc: None,
     free: None,
+    call_alloc: None,
 };
 
 /// The memory of the object itself. Aligned as its buffers are, and a whole number of alignments, so that
@@ -61,19 +63,21 @@ pub unsafe extern "C" fn MOC_Create(
         unsafe { write(out, core::ptr::null_mut()) };
         // SAFETY: the caller's contract.
         let settings = unsafe { read(settings) }.unwrap_or(DEFAULTS);
-        types::flag(settings.precise_coverage)?;
+        types::flag(settings.precise_coverage, "precise_coverage is neither 0 nor 1")?;
         let allocator = match (settings.alloc, settings.free) {
             (None, None) => Allocator::SYSTEM,
-            // SAFETY: the caller vouches for the callbacks.
-            (Some(alloc), Some(free)) => unsafe { Allocator::from_callbacks(alloc, free) },
-            _ => return Err(Error::NullPointer),
+            // SAFETY: the caller vouches for the callbacks, and for the one that calls one of them.
+            (Some(alloc), Some(free)) => unsafe {
+                Allocator::from_callbacks(alloc, free).called_through(settings.call_alloc)
+            },
+            _ => return Err(Refusal::new(Error::NullPointer, "of alloc and free one is null")),
         };
         let settings = Settings {
             implementation: types::implementation(settings.implementation)?,
             update_rule: types::update_rule(settings.update_rule)?,
             y_axis: types::y_axis(settings.y_axis)?,
             allocator,
-            statistics: types::flag(settings.statistics)?,
+            statistics: types::flag(settings.statistics, "statistics is neither 0 nor 1")?,
         };
         let moc = MaskedOcclusionCulling::new(settings);
         let place = allocator.allocate(object_layout()?)?.cast::<MaskedOcclusionCulling>().as_ptr();
@@ -107,6 +111,8 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
     })
 }
 
+pub(super) const RESOLUTION: &str = "width and height have to be from 1 to 16384";
+
 /// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
 /// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
 /// MOC_UPDATE_RULE_FOUR_LAYER).
@@ -122,7 +128,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
 #[unsafe(export_name = symbol!(MOC_SetResolution))]
 pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, width: u32, height: u32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object_mut(moc) }?.set_resolution(width, height))
+    guard(|| unsafe { object_mut(moc) }?.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION))
 }
 
 /// Writes the width and height of the buffer in pixels.
@@ -146,6 +152,8 @@ pub unsafe extern "C" fn MOC_GetResolution(
     })
 }
 
+pub(super) const BINS: &str = "bins_w or bins_h is 0, or so large that a bin is smaller than 32 by 8 pixels";
+
 /// Writes the size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
 /// rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and row of
 /// bins reach to the buffer's edge.
@@ -167,9 +175,11 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
         // SAFETY: the caller's contract.
         let moc = unsafe { object(moc) }?;
         // SAFETY: the caller's contract.
-        unsafe { write_size(width, height, moc.compute_bin_size(bins_w, bins_h)) }
+        unsafe { write_size(width, height, moc.compute_bin_size(bins_w, bins_h)) }.because(Error::InvalidSize, BINS)
     })
 }
+
+pub(super) const NEAR: &str = "the near plane is NaN or infinite";
 
 /// Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
 /// cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
@@ -183,7 +193,7 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
 #[unsafe(export_name = symbol!(MOC_SetNearClipPlane))]
 pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, near_w: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object_mut(moc) }?.set_near_clip_plane(near_w))
+    guard(|| unsafe { object_mut(moc) }?.set_near_clip_plane(near_w).because(Error::InvalidNumber, NEAR))
 }
 
 /// Writes the near plane, in clip-space w.
@@ -229,7 +239,7 @@ unsafe fn get<T: Copy>(
     moc: *const MaskedOcclusionCulling,
     out: *mut T,
     property: impl FnOnce(&MaskedOcclusionCulling) -> T,
-) -> Result<(), Error> {
+) -> Result<(), Refusal> {
     // SAFETY: the caller's contract.
     let moc = unsafe { object(moc) }?;
     check_out(out)?;

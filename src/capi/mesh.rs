@@ -3,6 +3,7 @@
 use glam::Mat4;
 
 use super::pointers::{read, slice};
+use super::refusal::{Because, Refusal};
 use super::types::{self, MOC_VertexLayout};
 use crate::vertices::{VertexSource, vertex_count};
 use crate::{DrawOptions, Error, MaskedOcclusionCulling, VertexLayout};
@@ -32,16 +33,19 @@ impl MeshArguments {
     /// Each pointer is null or can be read: `triangles` for three indices a triangle, `model_to_clip` for
     /// 16 floats, and `vertices` for `vertex_floats` floats or, without that, at every vertex from the lowest
     /// to the highest index.
-    pub unsafe fn check<'a>(self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Error> {
-        let count = usize::try_from(self.n_triangles).map_err(|_| Error::InvalidSize)?;
-        let indices = count.checked_mul(3).ok_or(Error::InvalidSize)?;
+    pub unsafe fn check<'a>(self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Refusal> {
+        const COUNT: Refusal =
+            Refusal::new(Error::InvalidSize, "n_triangles is negative, or more than fits into memory");
+        const STRIDE: Refusal = Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative");
+        let count = usize::try_from(self.n_triangles).map_err(|_| COUNT)?;
+        let indices = count.checked_mul(3).ok_or(COUNT)?;
         if count > 0 && self.vertices.is_null() {
-            return Err(Error::NullPointer);
+            return Err(Refusal::new(Error::NullPointer, "vertices is null"));
         }
         // SAFETY: the caller's contract.
         let layout = unsafe { read(self.layout) }.map_or(VertexLayout::CLIP_SPACE, VertexLayout::from);
         if layout.stride < 0 {
-            return Err(Error::InvalidLayout);
+            return Err(STRIDE);
         }
         // SAFETY: the caller's contract.
         let matrix = unsafe { read(self.model_to_clip.cast::<[f32; 16]>()) };
@@ -51,9 +55,17 @@ impl MeshArguments {
             clip_planes: types::clip_planes(self.clip_planes)?,
         };
         // SAFETY: the caller's contract.
-        let triangles = unsafe { slice(self.triangles, indices) }?;
+        let triangles = unsafe { slice(self.triangles, indices) }
+            .because(Error::NullPointer, "triangles is null")
+            .because(Error::InvalidLayout, "triangles is not at a multiple of 4 bytes")
+            .because(Error::InvalidSize, "n_triangles is more than fits into memory")?;
         if let Some(floats) = self.vertex_floats {
-            moc.check_indices(triangles, vertex_count(floats.saturating_mul(size_of::<f32>()), layout)?)?;
+            let vertices = vertex_count(floats.saturating_mul(size_of::<f32>()), layout)
+                .because(Error::InvalidLayout, "an offset of the vertex layout is negative")?;
+            moc.check_indices(triangles, vertices).because(
+                Error::IndexOutOfRange,
+                "triangles has an index of a vertex that is not within vertex_floats",
+            )?;
         }
         Ok(CheckedMesh { vertices: VertexSource { base: self.vertices.cast(), layout }, triangles, options })
     }

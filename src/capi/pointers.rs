@@ -1,19 +1,24 @@
 //! From the caller's pointers to references and slices, with the checks that can be made.
 
+use super::refusal::{Because, Refusal};
 use crate::{Error, MaskedOcclusionCulling};
+
+const NO_OBJECT: Refusal = Refusal::new(Error::NullPointer, "the object is null");
 
 /// # Safety
 /// Null or from `MOC_Create` and not destroyed, and nobody changes the object meanwhile.
-pub(super) unsafe fn object<'a>(moc: *const MaskedOcclusionCulling) -> Result<&'a MaskedOcclusionCulling, Error> {
+pub(super) unsafe fn object<'a>(moc: *const MaskedOcclusionCulling) -> Result<&'a MaskedOcclusionCulling, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { moc.as_ref() }.ok_or(Error::NullPointer)
+    unsafe { moc.as_ref() }.ok_or(NO_OBJECT)
 }
 
 /// # Safety
 /// Null or from `MOC_Create` and not destroyed, and nobody else uses the object meanwhile.
-pub(super) unsafe fn object_mut<'a>(moc: *mut MaskedOcclusionCulling) -> Result<&'a mut MaskedOcclusionCulling, Error> {
+pub(super) unsafe fn object_mut<'a>(
+    moc: *mut MaskedOcclusionCulling,
+) -> Result<&'a mut MaskedOcclusionCulling, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { moc.as_mut() }.ok_or(Error::NullPointer)
+    unsafe { moc.as_mut() }.ok_or(NO_OBJECT)
 }
 
 /// An array of objects.
@@ -24,11 +29,17 @@ pub(super) unsafe fn object_mut<'a>(moc: *mut MaskedOcclusionCulling) -> Result<
 pub(super) unsafe fn objects<'a>(
     objects: *const *const MaskedOcclusionCulling,
     count: u32,
-) -> Result<Vec<&'a MaskedOcclusionCulling>, Error> {
+) -> Result<Vec<&'a MaskedOcclusionCulling>, Refusal> {
     // SAFETY: the caller's contract.
-    let pointers = unsafe { slice(objects, count as usize) }?;
+    let pointers =
+        unsafe { slice(objects, count as usize) }.because(Error::NullPointer, "the array of others is null")?;
     // SAFETY: the caller's contract.
-    pointers.iter().map(|&moc| unsafe { object(moc) }).collect()
+    let object = |&moc: &_| unsafe { object(moc) };
+    pointers
+        .iter()
+        .map(object)
+        .collect::<Result<_, _>>()
+        .because(Error::NullPointer, "one of the other objects is null")
 }
 
 /// `len` elements from `data`, which may be null when there are none.
@@ -95,8 +106,8 @@ pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
 }
 
 /// Refuses a null out pointer.
-pub(super) fn check_out<T>(out: *mut T) -> Result<(), Error> {
-    if out.is_null() { Err(Error::NullPointer) } else { Ok(()) }
+pub(super) fn check_out<T>(out: *mut T) -> Result<(), Refusal> {
+    if out.is_null() { Err(Refusal::new(Error::NullPointer, "the pointer for the answer is null")) } else { Ok(()) }
 }
 
 /// Writes a width and a height, or 0 by 0 with the error that stands for them.
@@ -107,7 +118,7 @@ pub(super) unsafe fn write_size(
     width: *mut u32,
     height: *mut u32,
     size: Result<(u32, u32), Error>,
-) -> Result<(), Error> {
+) -> Result<(), Refusal> {
     check_out(width)?;
     check_out(height)?;
     let (w, h) = size.unwrap_or((0, 0));
@@ -116,5 +127,5 @@ pub(super) unsafe fn write_size(
         write(width, w);
         write(height, h);
     }
-    size.map(|_| ())
+    Ok(size.map(|_| ())?)
 }

@@ -3,8 +3,10 @@
 use core::ffi::{c_char, c_void};
 use core::ptr::NonNull;
 
+use super::lifecycle::{NEAR, RESOLUTION};
 use super::pointers::{check_out, read, write, write_size};
 use super::pool_state::PoolState;
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, ThreadStart, ThreadpoolSettings};
 
@@ -22,11 +24,13 @@ impl MOC_Threadpool {
     }
 }
 
+pub(super) const EMPTY: &str = "no buffer: call MOC_ThreadpoolSetBuffer first, with an object that has one";
+
 /// # Safety
 /// Null or from `MOC_ThreadpoolCreate` and not destroyed.
-pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Error> {
+pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { pool.as_ref() }.ok_or(Error::NullPointer)
+    unsafe { pool.as_ref() }.ok_or(Refusal::new(Error::NullPointer, "the pool is null"))
 }
 
 /// Called by a thread of a pool when it starts, with the `user` of the settings and the thread's number from 0 on: for its priority,
@@ -75,12 +79,12 @@ unsafe impl Sync for User {}
 impl MOC_ThreadpoolSettings {
     /// # Safety
     /// `thread_name` is null or a C string; `thread_start` may be called by any thread.
-    unsafe fn to_rust(self) -> Result<ThreadpoolSettings, Error> {
+    unsafe fn to_rust(self) -> Result<ThreadpoolSettings, Refusal> {
         if (self.size as usize) < size_of::<Self>() {
-            return Err(Error::InvalidSize);
+            return Err(Refusal::new(Error::InvalidSize, "size is not sizeof(MOC_ThreadpoolSettings)"));
         }
         if self.reserved != 0 {
-            return Err(Error::InvalidEnum);
+            return Err(Refusal::new(Error::InvalidEnum, "reserved is not 0"));
         }
         let mut settings = ThreadpoolSettings::default();
         let or = |value: u32, default: u32| if value == 0 { default } else { value };
@@ -161,7 +165,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
 ) -> MOC_Status {
     let settings = || {
         // SAFETY: the caller's contract.
-        let settings = unsafe { read(settings) }.ok_or(Error::NullPointer)?;
+        let settings = unsafe { read(settings) }.ok_or(Refusal::new(Error::NullPointer, "settings is null"))?;
         // SAFETY: the caller's contract.
         unsafe { settings.to_rust() }
     };
@@ -172,14 +176,15 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
 /// # Safety
 /// `out` is null or can be written.
 unsafe fn create(
-    settings: impl FnOnce() -> Result<ThreadpoolSettings, Error>,
+    settings: impl FnOnce() -> Result<ThreadpoolSettings, Refusal>,
     out: *mut *mut MOC_Threadpool,
 ) -> MOC_Status {
     guard(|| {
         check_out(out)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, core::ptr::null_mut()) };
-        let pool = MOC_Threadpool::new(settings()?)?;
+        let pool = MOC_Threadpool::new(settings()?)
+            .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads above 1024")?;
         // SAFETY: as above.
         unsafe { write(out, pool) };
         Ok(())
@@ -318,7 +323,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 ) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
-        unsafe { write_size(bins_w, bins_h, handle(pool)?.pool.bin_count()) }
+        unsafe { write_size(bins_w, bins_h, handle(pool)?.pool.bin_count()).because(Error::NoBuffer, EMPTY) }
     })
 }
 
@@ -339,7 +344,12 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     moc: *mut MaskedOcclusionCulling,
 ) -> MOC_Status {
     // SAFETY: the caller's contract; an object that is destroyed leaves its pool first.
-    guard(|| unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)) })
+    guard(|| unsafe {
+        handle(pool)?
+            .pool
+            .set_buffer_unowned(NonNull::new(moc))
+            .because(Error::Busy, "the object belongs to another pool")
+    })
 }
 
 /// MOC_SetResolution of the pool's object, after what was submitted is drawn.
@@ -355,7 +365,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     height: u32,
 ) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.set_resolution(width, height))
+    let done = || unsafe { handle(pool) }?.pool.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION);
+    guard(|| done().because(Error::NoBuffer, EMPTY))
 }
 
 /// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane of the pool's object.
@@ -367,5 +378,6 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetNearClipPlane))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.set_near_clip_plane(near))
+    let done = || unsafe { handle(pool) }?.pool.set_near_clip_plane(near).because(Error::InvalidNumber, NEAR);
+    guard(|| done().because(Error::NoBuffer, EMPTY))
 }

@@ -1,9 +1,12 @@
 //! What a pool draws and answers.
 
 use super::mesh::{CheckedMesh, MeshArguments};
+use super::messages::note;
 use super::pointers::{check_out, objects, read, slice_mut};
-use super::pool::{MOC_Threadpool, handle};
+use super::pool::{EMPTY, MOC_Threadpool, handle};
 use super::pool_state::State;
+use super::query::odd_rectangle;
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_VertexLayout};
 use crate::{CullingResult, Error, MaskedOcclusionCulling, VertexLayout};
@@ -11,9 +14,9 @@ use crate::{CullingResult, Error, MaskedOcclusionCulling, VertexLayout};
 impl MOC_Threadpool {
     /// # Safety
     /// As [`MeshArguments::check`].
-    unsafe fn check<'a>(&self, arguments: MeshArguments) -> Result<CheckedMesh<'a>, Error> {
+    unsafe fn check<'a>(&self, arguments: MeshArguments) -> Result<CheckedMesh<'a>, Refusal> {
         // SAFETY: the caller's contract.
-        self.pool.with_object(|moc| unsafe { arguments.check(moc) })
+        self.pool.with_object(|moc| Ok(unsafe { arguments.check(moc) })).because(Error::NoBuffer, EMPTY)?
     }
 
     /// A mesh with what the calling thread has set, checked.
@@ -27,7 +30,7 @@ impl MOC_Threadpool {
         n_triangles: i32,
         winding: i32,
         clip_planes: i32,
-    ) -> Result<CheckedMesh<'a>, Error> {
+    ) -> Result<CheckedMesh<'a>, Refusal> {
         let State { matrix, layout } = self.state.get();
         let arguments = MeshArguments {
             vertices,
@@ -45,21 +48,21 @@ impl MOC_Threadpool {
 
     /// # Safety
     /// As MOC_ThreadpoolRenderMesh and [`MeshArguments::check`].
-    unsafe fn render(&self, arguments: MeshArguments) -> Result<(), Error> {
+    unsafe fn render(&self, arguments: MeshArguments) -> Result<(), Refusal> {
         // SAFETY: the caller's contract.
         unsafe {
             let mesh = self.check(arguments)?;
-            self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)
+            Ok(self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)?)
         }
     }
 
     /// # Safety
     /// As [`MeshArguments::check`].
-    unsafe fn test(&self, arguments: MeshArguments) -> Result<CullingResult, Error> {
+    unsafe fn test(&self, arguments: MeshArguments) -> Result<CullingResult, Refusal> {
         // SAFETY: the caller's contract.
         unsafe {
             let mesh = self.check(arguments)?;
-            self.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)
+            Ok(self.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)?)
         }
     }
 }
@@ -99,7 +102,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
         let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
         let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
         if layout.stride < 0 {
-            return Err(Error::InvalidLayout);
+            return Err(Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative"));
         }
         pool.state.change(|state| state.layout = layout);
         Ok(())
@@ -116,7 +119,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
 #[unsafe(export_name = symbol!(MOC_ThreadpoolClearBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.clear_buffer())
+    guard(|| unsafe { handle(pool) }?.pool.clear_buffer().because(Error::NoBuffer, EMPTY))
 }
 
 /// MOC_ThreadpoolRenderMesh with the matrix and the vertex layout that the calling thread has set.
@@ -140,7 +143,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
         // SAFETY: the caller's contract.
         let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
-        unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+        Ok(unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
     })
 }
 
@@ -295,7 +298,12 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     let query = || {
         check_out(result)?;
         // SAFETY: the caller's contract.
-        unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin)
+        let answer =
+            unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin).because(Error::NoBuffer, EMPTY)?;
+        if answer == CullingResult::Visible {
+            note("MOC_ThreadpoolTestRect", || odd_rectangle([xmin, ymin, xmax, ymax, wmin]));
+        }
+        Ok(answer)
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
@@ -323,7 +331,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
         // SAFETY: the caller's contract.
         let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
         // SAFETY: the caller's contract.
-        unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
+        Ok(unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
@@ -345,14 +353,12 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
         check_out(out)?;
         // SAFETY: the caller's contract.
         let pool = &unsafe { handle(pool) }?.pool;
-        let flip = types::flag(flip_y)?;
-        pool.with_pixels(
-            |pixels| {
-                // SAFETY: the caller's contract.
-                unsafe { slice_mut(out, pixels) }
-            },
-            flip,
-        )
+        let flip = types::flag(flip_y, "flip_y is neither 0 nor 1")?;
+        // SAFETY: the caller's contract.
+        let out = |pixels| unsafe { slice_mut(out, pixels) };
+        pool.with_pixels(out, flip)
+            .because(Error::NoBuffer, EMPTY)
+            .because(Error::InvalidLayout, "out is not at a multiple of 4 bytes")
     })
 }
 
@@ -374,6 +380,6 @@ pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
         // SAFETY: the caller's contract.
         let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
         // SAFETY: the caller's contract.
-        unsafe { pool.pool.merge_buffers(&others) }
+        unsafe { pool.pool.merge_buffers(&others) }.because(Error::NoBuffer, EMPTY)
     })
 }

@@ -1,10 +1,12 @@
 //! What reads the buffer: tests, depth, statistics.
 
 use super::mesh::MeshArguments;
+use super::messages::note;
 use super::pointers::{check_out, object, slice_mut, write};
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_Statistics, MOC_VertexLayout};
-use crate::{Error, MaskedOcclusionCulling};
+use crate::{CullingResult, Error, MaskedOcclusionCulling};
 
 /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
 /// same depth?
@@ -47,7 +49,7 @@ pub unsafe extern "C" fn MOC_TestTriangles(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { test(moc, mesh, result) }
+    unsafe { guard_result(result, || test(moc, mesh)) }
 }
 
 /// As MOC_TestTriangles, with the length of the vertex array in floats: an index that names a vertex outside
@@ -81,22 +83,18 @@ pub unsafe extern "C" fn MOC_TestTrianglesChecked(
         layout,
     };
     // SAFETY: the caller's contract.
-    unsafe { test(moc, mesh, result) }
+    unsafe { guard_result(result, || test(moc, mesh)) }
 }
 
 /// # Safety
 /// As MOC_TestTriangles, and [`MeshArguments::check`].
-unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: *mut i32) -> MOC_Status {
-    let query = || {
-        // SAFETY: the caller's contract.
-        let moc = unsafe { object(moc) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { mesh.check(moc) }?;
-        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        unsafe { moc.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }
-    };
+unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments) -> Result<CullingResult, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { guard_result(result, query) }
+    let moc = unsafe { object(moc) }?;
+    // SAFETY: the caller's contract.
+    let mesh = unsafe { mesh.check(moc) }?;
+    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+    Ok(unsafe { moc.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
 }
 
 /// Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
@@ -107,7 +105,8 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments, result: 
 /// - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
 /// - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
 ///   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
-///   a minimum is above its maximum, and on errors.
+///   a minimum is above its maximum, and on errors. NaN and such a minimum are told to the callback of
+///   MOC_SetMessageCallback, though the status is MOC_STATUS_OK.
 ///
 /// Several threads may test at once.
 ///
@@ -129,10 +128,27 @@ pub unsafe extern "C" fn MOC_TestRect(
     let query = || {
         check_out(result)?;
         // SAFETY: the caller's contract.
-        unsafe { object(moc) }?.test_rect(xmin, ymin, xmax, ymax, wmin)
+        let answer = unsafe { object(moc) }?.test_rect(xmin, ymin, xmax, ymax, wmin)?;
+        if answer == CullingResult::Visible {
+            note("MOC_TestRect", || odd_rectangle([xmin, ymin, xmax, ymax, wmin]));
+        }
+        Ok(answer)
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
+}
+
+/// What no caller means a rectangle to be: xmin, ymin, xmax, ymax and wmin.
+pub(super) fn odd_rectangle([xmin, ymin, xmax, ymax, wmin]: [f32; 5]) -> Option<&'static str> {
+    if [xmin, ymin, xmax, ymax, wmin].iter().any(|number| number.is_nan()) {
+        Some("a number is NaN: the answer is MOC_VISIBLE")
+    } else if xmin > xmax {
+        Some("xmin is above xmax: the answer is MOC_VISIBLE")
+    } else if ymin > ymax {
+        Some("ymin is above ymax (y points up): the answer is MOC_VISIBLE")
+    } else {
+        None
+    }
 }
 
 /// Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
@@ -179,18 +195,19 @@ unsafe fn depth(
     out: *mut f32,
     floats: Option<usize>,
     flip_y: i32,
-) -> Result<(), Error> {
+) -> Result<(), Refusal> {
     // SAFETY: the caller's contract.
     let moc = unsafe { object(moc) }?;
     check_out(out)?;
-    let flip_y = types::flag(flip_y)?;
+    let flip_y = types::flag(flip_y, "flip_y is neither 0 nor 1")?;
     let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
     let pixels = width as usize * height as usize;
     if floats.is_some_and(|floats| floats < pixels) {
-        return Err(Error::InvalidSize);
+        return Err(Refusal::new(Error::InvalidSize, "out_floats is less than width times height"));
     }
     // SAFETY: at least `pixels` floats, as just checked or by the caller's contract.
-    moc.compute_pixel_depth_buffer(unsafe { slice_mut(out, pixels) }?, flip_y)
+    let out = unsafe { slice_mut(out, pixels) }.because(Error::InvalidLayout, "out is not at a multiple of 4 bytes")?;
+    Ok(moc.compute_pixel_depth_buffer(out, flip_y)?)
 }
 
 /// Writes what was counted since the object was made; nothing sets the counts back.
@@ -208,6 +225,25 @@ pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, o
         check_out(out)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, moc.statistics().into()) };
+        Ok(())
+    })
+}
+
+/// Writes how many triangles draws dropped since the object was made, for a NaN, an infinite coordinate, or a distance beyond
+/// 2^40. They are counted whether or not the settings ask for statistics.
+///
+/// Errors: MOC_STATUS_NULL_POINTER.
+///
+/// # Safety
+/// As MOC_GetStatistics.
+#[unsafe(export_name = symbol!(MOC_GetDroppedTriangles))]
+pub unsafe extern "C" fn MOC_GetDroppedTriangles(moc: *const MaskedOcclusionCulling, out: *mut i64) -> MOC_Status {
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { object(moc) }?;
+        check_out(out)?;
+        // SAFETY: not null, and the caller's contract.
+        unsafe { write(out, moc.statistics().occluders.num_dropped_triangles) };
         Ok(())
     })
 }

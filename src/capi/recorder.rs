@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::mesh::MeshArguments;
 use super::pointers::{check_out, object, slice, write};
+use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
 use crate::pipeline::Mesh;
@@ -25,6 +26,9 @@ pub enum MOC_RecordedCallKind {
     /// MOC_ClearBuffer.
     MOC_RECORDED_CLEAR_BUFFER = 3,
 }
+
+const NO_RECORDING: Refusal = Refusal::new(Error::NullPointer, "the recording is null");
+const NO_CALL: Refusal = Refusal::new(Error::IndexOutOfRange, "index is not below num_calls");
 
 /// A recording that was read; see MOC_RecordingLoad.
 pub struct MOC_Recording {
@@ -86,7 +90,7 @@ pub struct MOC_RecordedCall {
 #[unsafe(export_name = symbol!(MOC_RecorderStart))]
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { Ok(object(moc)?.recorder_start(self::path(path)?)?) })
+    guard(|| unsafe { Ok(object(moc)?.recorder_start(self::path(path)?).map_err(Error::from)?) })
 }
 
 /// Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
@@ -98,7 +102,7 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
 #[unsafe(export_name = symbol!(MOC_RecorderStop))]
 pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { Ok(object(moc)?.recorder_stop()?) })
+    guard(|| unsafe { Ok(object(moc)?.recorder_stop().map_err(Error::from)?) })
 }
 
 /// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. Note the order of
@@ -159,7 +163,7 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
 #[unsafe(export_name = symbol!(MOC_RecordingLoad))]
 pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut MOC_Recording) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?)?)) })
+    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?).map_err(Error::from)?)) })
 }
 
 /// The same of a file that was read into memory, which is not needed afterwards.
@@ -175,7 +179,12 @@ pub unsafe extern "C" fn MOC_RecordingFromMemory(
     out: *mut *mut MOC_Recording,
 ) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { load(out, || Ok(Recording::from_bytes(slice(bytes, size)?)?)) })
+    guard(|| unsafe {
+        load(out, || {
+            Ok(Recording::from_bytes(slice(bytes, size).because(Error::NullPointer, "bytes is null")?)
+                .map_err(Error::from)?)
+        })
+    })
 }
 
 /// Frees a recording. Null is allowed.
@@ -207,7 +216,7 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
     guard(|| {
         check_out(out)?;
         // SAFETY: the caller's contract.
-        let recording = unsafe { &recording.as_ref().ok_or(Error::NullPointer)?.recording };
+        let recording = unsafe { &recording.as_ref().ok_or(NO_RECORDING)?.recording };
         let info = MOC_RecordingInfo {
             near_clip_plane: recording.near_clip_plane,
             width: recording.resolution.0,
@@ -236,8 +245,8 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
     guard(|| {
         check_out(out)?;
         // SAFETY: the caller's contract.
-        let MOC_Recording { recording } = unsafe { recording.as_ref() }.ok_or(Error::NullPointer)?;
-        let call = recording.calls.get(index as usize).ok_or(Error::IndexOutOfRange)?;
+        let MOC_Recording { recording } = unsafe { recording.as_ref() }.ok_or(NO_RECORDING)?;
+        let call = recording.calls.get(index as usize).ok_or(NO_CALL)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, in_c(call)) };
         Ok(())
@@ -246,9 +255,9 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
 
 /// # Safety
 /// `path` is null or ends with a zero.
-unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Error> {
+unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Refusal> {
     if path.is_null() {
-        return Err(Error::NullPointer);
+        return Err(Refusal::new(Error::NullPointer, "path is null"));
     }
     // SAFETY: not null, and the caller's contract.
     let path = unsafe { CStr::from_ptr(path) };
@@ -262,7 +271,7 @@ unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Error> {
 
 /// # Safety
 /// `out` is null or can be written.
-unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recording, Error>) -> Result<(), Error> {
+unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recording, Refusal>) -> Result<(), Refusal> {
     check_out(out)?;
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };

@@ -3,7 +3,10 @@
 use core::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::messages;
 use super::pointers::write;
+use super::refusal::Refusal;
+use crate::float_environment::in_default_environment;
 use crate::{CullingResult, Error};
 
 /// The version of this interface: 1000 * major + minor of the library's version.
@@ -106,26 +109,22 @@ pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
     text.map_or(c"not a status of this library", |t| t).as_ptr()
 }
 
-/// Runs the body of an exported function; a panic becomes a status.
-pub(super) fn guard(body: impl FnOnce() -> Result<(), Error>) -> MOC_Status {
-    match catch_unwind(AssertUnwindSafe(body)) {
-        Ok(Ok(())) => MOC_Status::MOC_STATUS_OK,
-        Ok(Err(error)) => error.into(),
-        Err(payload) => {
-            // Dropping what was thrown could panic again.
-            core::mem::forget(payload);
-            MOC_Status::MOC_STATUS_INTERNAL
-        }
-    }
+/// Runs the body of an exported function; a panic becomes a status. The closure has to stand in that function: messages take
+/// the name from there.
+pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
+    run(messages::function_of::<F>, body)
 }
 
 /// As [`guard`], for calls that answer: `result` gets the answer, or "visible" where there is none.
 ///
 /// # Safety
 /// `result` is null or can be written.
-pub(super) unsafe fn guard_result(result: *mut i32, body: impl FnOnce() -> Result<CullingResult, Error>) -> MOC_Status {
+pub(super) unsafe fn guard_result<F: FnOnce() -> Result<CullingResult, Refusal>>(
+    result: *mut i32,
+    body: F,
+) -> MOC_Status {
     let mut answer = CullingResult::Visible;
-    let status = guard(|| {
+    let status = run(messages::function_of::<F>, || {
         answer = body()?;
         Ok(())
     });
@@ -134,6 +133,22 @@ pub(super) unsafe fn guard_result(result: *mut i32, body: impl FnOnce() -> Resul
         unsafe { write(result, answer as i32) };
     }
     status
+}
+
+#[inline]
+fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -> MOC_Status {
+    match in_default_environment(|| catch_unwind(AssertUnwindSafe(body))) {
+        Ok(Ok(())) => {
+            messages::done();
+            MOC_Status::MOC_STATUS_OK
+        }
+        Ok(Err(refusal)) => messages::refused(name(), refusal),
+        Err(payload) => {
+            // Dropping what was thrown could panic again.
+            core::mem::forget(payload);
+            messages::refused(name(), Error::Internal.into())
+        }
+    }
 }
 
 #[cfg(test)]

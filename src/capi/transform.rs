@@ -1,6 +1,7 @@
 //! Transforming vertices to clip space.
 
 use super::pointers::{check_length, read};
+use super::refusal::Refusal;
 use super::status::{MOC_Status, guard};
 use super::types::MOC_VertexLayout;
 use crate::vertices::VertexSource;
@@ -28,18 +29,19 @@ pub unsafe extern "C" fn MOC_TransformVertices(
     layout: *const MOC_VertexLayout,
 ) -> MOC_Status {
     guard(|| {
+        const NO_MATRIX: Refusal = Refusal::new(Error::NullPointer, "matrix is null");
         // SAFETY: the caller's contract.
-        let matrix = unsafe { read(matrix.cast::<[f32; 16]>()) }.ok_or(Error::NullPointer)?;
+        let matrix = unsafe { read(matrix.cast::<[f32; 16]>()) }.ok_or(NO_MATRIX)?;
         // SAFETY: the caller's contract.
         let layout = unsafe { read(layout) }.map_or(VertexLayout::POSITIONS, VertexLayout::from);
         if layout.stride < 0 {
-            return Err(Error::InvalidLayout);
+            return Err(Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative"));
         }
         if n_vertices == 0 {
             return Ok(());
         }
         if vertices.is_null() || out.is_null() {
-            return Err(Error::NullPointer);
+            return Err(Refusal::new(Error::NullPointer, "vertices or out is null"));
         }
         check_length::<[f32; 4]>(n_vertices as usize)?;
         let source = VertexSource { base: vertices.cast(), layout };

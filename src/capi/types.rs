@@ -2,6 +2,7 @@
 
 use core::ffi::c_void;
 
+use super::refusal::Refusal;
 use crate::{
     BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, TriList, UpdateRule,
     VertexLayout, YAxis,
@@ -103,6 +104,11 @@ pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: 
 /// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
 pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 
+/// Calls `alloc(alignment, size)` and returns what it gave, for languages whose allocators throw: nothing may be thrown into the
+/// library, so that it catches, and returns null. It is called wherever `alloc` would be.
+pub type MOC_CallAlloc =
+    Option<unsafe extern "C" fn(alloc: MOC_AlignedAlloc, alignment: usize, size: usize) -> *mut c_void>;
+
 /// What an object is made with. Fill it with MOC_DefaultSettings first, then change what matters.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -116,14 +122,17 @@ pub struct MOC_Settings {
     pub y_axis: i32,
     /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
     pub precise_coverage: i32,
-    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: of
-    /// all counts only that of dropped triangles is kept. Default 0.
+    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: only
+    /// MOC_GetDroppedTriangles counts. Default 0.
     pub statistics: i32,
     /// Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
     /// system. Null, together with `free`: the system. Default null.
     pub alloc: MOC_AlignedAlloc,
     /// Takes back what `alloc` gave. Null exactly when `alloc` is.
     pub free: MOC_AlignedFree,
+    /// Calls `alloc` in place of the library, where that has to be prepared for what it does. Null: the library calls it.
+    /// Without `alloc` of no effect. Default null.
+    pub call_alloc: MOC_CallAlloc,
 }
 
 /// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
@@ -185,8 +194,6 @@ pub struct MOC_OccluderStatistics {
     pub num_tiles_updated: i64,
     /// Tiles in which a reference depth rose.
     pub num_tiles_merged: i64,
-    /// Triangles dropped for a NaN, an infinite coordinate, or a distance beyond 2^40.
-    pub num_dropped_triangles: i64,
 }
 
 /// Counts of what queries did since the object was made.
@@ -203,8 +210,8 @@ pub struct MOC_OccludeeStatistics {
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone, and zeros. The same
-/// on every instruction set.
+/// All counts of an object, if its settings ask for statistics; else zeros. The same on every instruction set. The 72 bytes
+/// are those of Intel's struct, and stay so; other counts have functions of their own, as MOC_GetDroppedTriangles.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_Statistics {
@@ -241,7 +248,6 @@ impl From<Statistics> for MOC_Statistics {
                 num_tiles_traversed: s.occluders.num_tiles_traversed,
                 num_tiles_updated: s.occluders.num_tiles_updated,
                 num_tiles_merged: s.occluders.num_tiles_merged,
-                num_dropped_triangles: s.occluders.num_dropped_triangles,
             },
             occludees: MOC_OccludeeStatistics {
                 num_processed_rectangles: s.occludees.num_processed_rectangles,
@@ -260,6 +266,14 @@ const _: () = {
     assert!(core::mem::offset_of!(MOC_TriList, capacity) == core::mem::offset_of!(TriList<'_>, capacity));
     assert!(core::mem::offset_of!(MOC_TriList, count) == core::mem::offset_of!(TriList<'_>, len));
     assert!(core::mem::offset_of!(MOC_TriList, data) == core::mem::offset_of!(TriList<'_>, data));
+};
+
+// Programs copy these by offset.
+const _: () = {
+    assert!(size_of::<MOC_Statistics>() == 72);
+    assert!(core::mem::offset_of!(MOC_Statistics, occludees) == 40);
+    assert!(core::mem::offset_of!(MOC_OccluderStatistics, num_tiles_merged) == 32);
+    assert!(core::mem::offset_of!(MOC_OccludeeStatistics, num_tiles_traversed) == 24);
 };
 
 // The integers of C are those of the Rust enumerations.
@@ -292,7 +306,7 @@ const _: () = {
     assert!(MOC_ClipPlanes::MOC_CLIP_PLANE_ALL as u32 == ClipPlanes::ALL.bits());
 };
 
-pub(super) fn implementation(value: i32) -> Result<Implementation, Error> {
+pub(super) fn implementation(value: i32) -> Result<Implementation, Refusal> {
     Ok(match value {
         -1 => Implementation::Scalar,
         0 => Implementation::Sse2,
@@ -301,44 +315,48 @@ pub(super) fn implementation(value: i32) -> Result<Implementation, Error> {
         3 => Implementation::Avx512,
         16 => Implementation::Neon,
         17 => Implementation::Simd128,
-        _ => return Err(Error::InvalidEnum),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "implementation is no MOC_Implementation")),
     })
 }
 
-pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Error> {
+pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Refusal> {
     Ok(match value {
         0 => UpdateRule::ThreeLayer,
         1 => UpdateRule::Quick,
         2 => UpdateRule::Accurate,
         3 => UpdateRule::FourLayer,
-        _ => return Err(Error::InvalidEnum),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "update_rule is no MOC_UpdateRule")),
     })
 }
 
-pub(super) fn y_axis(value: i32) -> Result<YAxis, Error> {
+pub(super) fn y_axis(value: i32) -> Result<YAxis, Refusal> {
     Ok(match value {
         0 => YAxis::Down,
         1 => YAxis::Up,
-        _ => return Err(Error::InvalidEnum),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "y_axis is no MOC_YAxis")),
     })
 }
 
-pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Error> {
-    BackfaceWinding::from_number(value).ok_or(Error::InvalidEnum)
+pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Refusal> {
+    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "winding is no MOC_BackfaceWinding");
+    BackfaceWinding::from_number(value).ok_or(WHY)
 }
 
-pub(super) fn culling_result(value: i32) -> Result<CullingResult, Error> {
-    CullingResult::from_number(value).ok_or(Error::InvalidEnum)
+pub(super) fn culling_result(value: i32) -> Result<CullingResult, Refusal> {
+    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "result is no MOC_CullingResult, nor MOC_RESULT_UNKNOWN");
+    CullingResult::from_number(value).ok_or(WHY)
 }
 
-pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Error> {
-    u32::try_from(value).ok().and_then(ClipPlanes::from_bits).ok_or(Error::InvalidEnum)
+pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Refusal> {
+    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "clip_planes has a bit that is no MOC_ClipPlanes");
+    u32::try_from(value).ok().and_then(ClipPlanes::from_bits).ok_or(WHY)
 }
 
-pub(super) fn flag(value: i32) -> Result<bool, Error> {
+/// 0 or 1; `why` says which argument is something else.
+pub(super) fn flag(value: i32, why: &'static str) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(Error::InvalidEnum),
+        _ => Err(Refusal::new(Error::InvalidEnum, why)),
     }
 }

@@ -37,6 +37,7 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
 use crate::attachment::Pool;
+use crate::float_environment::in_default_environment;
 use crate::pipeline::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
@@ -135,7 +136,8 @@ impl CullingThreadpool {
                     // The thread works without what the callback did not finish.
                     let _ = catch_unwind(AssertUnwindSafe(|| started(number)));
                 }
-                crew.work(number as usize);
+                // The callback may have set another one.
+                in_default_environment(|| crew.work(number as usize));
             };
             let name = thread_name(&settings.thread_name, number);
             // Those that did start end with the pool.

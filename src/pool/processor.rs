@@ -18,27 +18,54 @@ impl Processor {
     }
 
     /// Moves the calling thread to another one of those that it may run on, if there is one; it may come back. False: not
-    /// again, for that did not work.
+    /// again, for that did not work, or somebody else says where the thread runs.
     ///
     /// On newer kernels the thread then keeps to the processors that there were, if others are added to the machine.
     #[must_use]
     pub fn leave(self) -> bool {
-        let size = size_of::<libc::cpu_set_t>();
-        if self.0 >= 8 * size {
+        self.leave_while(|| ())
+    }
+
+    /// `meanwhile` runs when the thread has moved and may not come back yet. An affinity that the program gives the thread
+    /// by then stays: it is not the one that was set here. Linux cannot compare and set in one step, so between the look
+    /// and the write there is time for one more, of a system call's length.
+    fn leave_while(self, meanwhile: impl FnOnce()) -> bool {
+        let Some(all) = affinity() else { return false };
+        let mut others = all;
+        if self.0 >= 8 * size_of_val(&others) {
             return false;
         }
-        // SAFETY: a set is an array of integers, for which zeros will do, and `size` is its size; the number is one of its
-        // bits. 0 is the calling thread.
+        // SAFETY: the two are sets, and the number is one of their bits.
         unsafe {
-            let mut all: libc::cpu_set_t = core::mem::zeroed();
-            if libc::sched_getaffinity(0, size, &mut all) != 0 || libc::CPU_COUNT(&all) < 2 {
+            if libc::CPU_COUNT(&all) < 2 {
                 return false;
             }
-            let mut others = all;
             libc::CPU_CLR(self.0, &mut others);
-            libc::sched_setaffinity(0, size, &others) == 0 && libc::sched_setaffinity(0, size, &all) == 0
         }
+        if !set_affinity(&others) {
+            return false;
+        }
+        meanwhile();
+        // SAFETY: both are sets.
+        let is_ours = affinity().is_some_and(|now| unsafe { libc::CPU_EQUAL(&now, &others) });
+        is_ours && set_affinity(&all)
     }
+}
+
+/// The processors that the calling thread may run on.
+#[cfg(target_os = "linux")]
+fn affinity() -> Option<libc::cpu_set_t> {
+    // SAFETY: a set is an array of integers, for which zeros will do, and the size is its own. 0 is the calling thread.
+    unsafe {
+        let mut set: libc::cpu_set_t = core::mem::zeroed();
+        (libc::sched_getaffinity(0, size_of_val(&set), &mut set) == 0).then_some(set)
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn set_affinity(set: &libc::cpu_set_t) -> bool {
+    // SAFETY: a set and its size. 0 is the calling thread.
+    unsafe { libc::sched_setaffinity(0, size_of_val(set), set) == 0 }
 }
 
 #[cfg(not(target_os = "linux"))]
@@ -54,26 +81,38 @@ impl Processor {
 
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
-    use super::Processor;
+    use super::{Processor, affinity, set_affinity};
 
-    fn allowed() -> libc::cpu_set_t {
-        // SAFETY: as in `leave`.
-        unsafe {
-            let mut all: libc::cpu_set_t = core::mem::zeroed();
-            assert_eq!(libc::sched_getaffinity(0, size_of::<libc::cpu_set_t>(), &mut all), 0);
-            all
-        }
+    fn equal(a: &libc::cpu_set_t, b: &libc::cpu_set_t) -> bool {
+        // SAFETY: both are sets.
+        unsafe { libc::CPU_EQUAL(a, b) }
     }
 
     #[test]
     fn who_leaves_a_processor_may_run_on_it_as_before() {
-        let before = allowed();
+        let before = affinity().unwrap();
         // With one processor there is none to go to.
         let _ = Processor::current().unwrap().leave();
-        // SAFETY: both are sets.
-        assert!(unsafe { libc::CPU_EQUAL(&before, &allowed()) });
+        assert!(equal(&before, &affinity().unwrap()));
         assert!(!Processor(usize::MAX).leave());
-        // SAFETY: as above.
-        assert!(unsafe { libc::CPU_EQUAL(&before, &allowed()) });
+        assert!(equal(&before, &affinity().unwrap()));
+    }
+
+    #[test]
+    fn an_affinity_that_the_program_sets_meanwhile_stays() {
+        let before = affinity().unwrap();
+        let here = Processor::current().unwrap();
+        // SAFETY: sets are arrays of integers, for which zeros will do, and the number is that of a processor.
+        let (several, pinned) = unsafe {
+            let mut pinned: libc::cpu_set_t = core::mem::zeroed();
+            libc::CPU_SET(here.0, &mut pinned);
+            (libc::CPU_COUNT(&before) > 1, pinned)
+        };
+        let moved = here.leave_while(|| assert!(set_affinity(&pinned)));
+        assert!(!moved);
+        if several {
+            assert!(equal(&pinned, &affinity().unwrap()));
+        }
+        assert!(set_affinity(&before));
     }
 }

@@ -1,0 +1,14 @@
+// A unit as it is without exceptions (-fno-exceptions), in a program that has them elsewhere.
+#define MOC_DETAIL_EXCEPTIONS 0
+#include "throwing_allocator.h"
+
+MaskedOcclusionCulling *CreateWithoutExceptions(MaskedOcclusionCulling::pfnAlignedAlloc alloc,
+                                                MaskedOcclusionCulling::pfnAlignedFree release)
+{
+    return MaskedOcclusionCulling::Create(MaskedOcclusionCulling::AVX512, alloc, release);
+}
+
+void SetResolutionWithoutExceptions(MaskedOcclusionCulling *moc, unsigned int width, unsigned int height)
+{
+    moc->SetResolution(width, height);
+}

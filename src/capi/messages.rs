@@ -1,0 +1,164 @@
+//! What the last call of a thread reported, and the callback that is told what was refused and why.
+
+use core::cell::Cell;
+use core::ffi::{c_char, c_void};
+use core::fmt::Write;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+use super::refusal::Refusal;
+use super::status::{MOC_Status, guard};
+
+/// Is told of a call that was refused, or that did something else than was perhaps meant: `message` names the function, the
+/// argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
+///
+/// `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK where
+/// it was not refused. `message` is English and read during the call only. Called on the thread that made the call, from
+/// several at once if they are refused at once, and while the library holds no lock of its own. It may call the library; what is
+/// refused of that is not told. It must not throw or jump out.
+pub type MOC_MessageCallback = Option<unsafe extern "C" fn(user: *mut c_void, status: i32, message: *const c_char)>;
+
+#[derive(Clone, Copy)]
+struct Listener {
+    callback: unsafe extern "C" fn(*mut c_void, i32, *const c_char),
+    user: *mut c_void,
+}
+
+// SAFETY: the library never looks at what `user` points to; MOC_SetMessageCallback asks for a callback that any thread may call
+// with it.
+unsafe impl Send for Listener {}
+
+static LISTENER: Mutex<Option<Listener>> = Mutex::new(None);
+/// Whether there is a listener, to be asked without the lock.
+static LISTENING: AtomicBool = AtomicBool::new(false);
+/// Whether any call was refused yet: until then no thread's status is anything but OK, and none has to be set back.
+static REFUSED: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    static LAST: Cell<MOC_Status> = const { Cell::new(MOC_Status::MOC_STATUS_OK) };
+    static TELLING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// From now on calls that are refused, on any thread and with any object or pool, are told to `callback`, with `user` as its first
+/// argument; null: nobody is told, as at first. One callback serves the whole process.
+///
+/// When it returns, another thread may still be in the callback that was there before.
+///
+/// Errors: none.
+///
+/// # Safety
+/// `callback` is null or does what MOC_MessageCallback says, with `user`, on any thread, until it is replaced and every call that
+/// began before that has returned.
+#[unsafe(export_name = symbol!(MOC_SetMessageCallback))]
+pub unsafe extern "C" fn MOC_SetMessageCallback(callback: MOC_MessageCallback, user: *mut c_void) -> MOC_Status {
+    guard(|| {
+        let mut listener = LISTENER.lock().unwrap_or_else(PoisonError::into_inner);
+        *listener = callback.map(|callback| Listener { callback, user });
+        LISTENING.store(listener.is_some(), Relaxed);
+        Ok(())
+    })
+}
+
+/// The MOC_Status of the last call that the calling thread made, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText
+/// and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first.
+#[unsafe(export_name = symbol!(MOC_GetLastStatus))]
+pub extern "C" fn MOC_GetLastStatus() -> i32 {
+    // While a thread ends, its variables may be gone.
+    LAST.try_with(Cell::get).map_or(0, |status| status as i32)
+}
+
+/// A call did what it was asked to.
+#[inline]
+pub(super) fn done() {
+    if REFUSED.load(Relaxed) {
+        set_last(MOC_Status::MOC_STATUS_OK);
+    }
+}
+
+/// A call of this name was refused. Returns its status.
+#[cold]
+pub(super) fn refused(function: &str, refusal: Refusal) -> MOC_Status {
+    let status = refusal.error.into();
+    tell(function, status, refusal.why());
+    REFUSED.store(true, Relaxed);
+    set_last(status);
+    status
+}
+
+/// A call of this name is not refused, but `doubt` may find something that was hardly meant.
+#[inline]
+pub(super) fn note(function: &str, doubt: impl FnOnce() -> Option<&'static str>) {
+    if LISTENING.load(Relaxed)
+        && let Some(what) = doubt()
+    {
+        tell(function, MOC_Status::MOC_STATUS_OK, what);
+    }
+}
+
+fn set_last(status: MOC_Status) {
+    let _ = LAST.try_with(|last| last.set(status));
+}
+
+#[cold]
+fn tell(function: &str, status: MOC_Status, why: &str) {
+    if !LISTENING.load(Relaxed) || TELLING.try_with(|telling| telling.replace(true)).unwrap_or(true) {
+        return;
+    }
+    // Copied, so that the callback runs without the lock.
+    let listener = *LISTENER.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(Listener { callback, user }) = listener {
+        let mut text = Text::default();
+        // A text never fails; it is cut.
+        let _ = write!(text, "{function}: {why}");
+        // SAFETY: whoever called MOC_SetMessageCallback vouched for the two; the text ends with a zero.
+        unsafe { callback(user, status as i32, text.as_ptr()) };
+    }
+    let _ = TELLING.try_with(|telling| telling.set(false));
+}
+
+/// A text that ends with a zero, without memory of the allocator, which may be what just failed.
+struct Text {
+    bytes: [u8; 256],
+    len: usize,
+}
+
+impl Default for Text {
+    fn default() -> Self {
+        Self { bytes: [0; 256], len: 0 }
+    }
+}
+
+impl Text {
+    fn as_ptr(&self) -> *const c_char {
+        self.bytes.as_ptr().cast()
+    }
+}
+
+impl Write for Text {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let free = &mut self.bytes[self.len..255];
+        let len = text.len().min(free.len());
+        free[..len].copy_from_slice(&text.as_bytes()[..len]);
+        self.len += len;
+        Ok(())
+    }
+}
+
+/// The exported function in whose body a closure of type `T` stands; `core::any::type_name` has the path of both.
+pub(super) fn function_of<T>() -> &'static str {
+    let path = core::any::type_name::<T>();
+    path.split("::").find(|name| name.starts_with("MOC_")).unwrap_or("masked_occlusion_culling")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_text_is_cut_and_ends() {
+        let mut text = Text::default();
+        write!(text, "{}{}", "a".repeat(200), "b".repeat(200)).unwrap();
+        assert_eq!(text.bytes[254], b'b');
+        assert_eq!(text.bytes[255], 0);
+    }
+}

@@ -1,0 +1,135 @@
+//! Calls compute as the compiler takes for granted: rounding to nearest, with denormal numbers, and without traps.
+//!
+//! Engines change that for a thread: another rounding mode, denormals flushed to zero, exceptions that raise a signal. The same
+//! bits everywhere and conservative answers need the default, and a division by a zero that is masked out later must not
+//! end the program. So an exported function looks at the control register, which costs a nanosecond, and only where it
+//! says something else sets it, and sets it back at the end.
+
+/// Runs `body` in the default floating-point environment.
+#[inline]
+pub(crate) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
+    if control::is_default(control::read()) { body() } else { elsewhere(body) }
+}
+
+#[cold]
+#[inline(never)]
+fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
+    /// Sets back what was there, also while a panic passes.
+    struct SetBack(control::Register);
+    impl Drop for SetBack {
+        fn drop(&mut self) {
+            control::write(self.0);
+        }
+    }
+
+    let _before = SetBack(control::read());
+    control::write(control::DEFAULT);
+    let (mut body, mut result) = (Some(body), None);
+    let mut call: &mut dyn FnMut() = &mut || result = body.take().map(|body| body());
+    // A call that the compiler cannot look into: it may move arithmetic past the two writes otherwise.
+    core::hint::black_box(&mut call)();
+    result.expect("the body ran")
+}
+
+/// MXCSR: six flags that say what happened, and above them what controls.
+#[cfg(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse")))]
+mod control {
+    use core::arch::asm;
+
+    pub type Register = u32;
+    /// All exceptions masked, to nearest, denormals as they are.
+    pub const DEFAULT: Register = 0x1f80;
+
+    #[inline]
+    pub fn is_default(register: Register) -> bool {
+        register & !0x3f == DEFAULT
+    }
+
+    #[inline]
+    pub fn read() -> Register {
+        let mut register = 0u32;
+        // SAFETY: it writes the four bytes that the operand names, and nothing else.
+        unsafe { asm!("stmxcsr [{}]", in(reg) &raw mut register, options(nostack, preserves_flags)) };
+        register
+    }
+
+    #[inline]
+    pub fn write(register: Register) {
+        // SAFETY: it reads the four bytes that the operand names. The value is the default, which compiled code takes for
+        // granted, or what was read before and is in place again when the caller's code goes on.
+        unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const register, options(nostack, preserves_flags)) };
+    }
+}
+
+/// FPCR: rounding, flushing, default NaNs and traps; all zero at first.
+#[cfg(target_arch = "aarch64")]
+mod control {
+    use core::arch::asm;
+
+    pub type Register = u64;
+    pub const DEFAULT: Register = 0;
+
+    #[inline]
+    pub fn is_default(register: Register) -> bool {
+        register == DEFAULT
+    }
+
+    #[inline]
+    pub fn read() -> Register {
+        let register: u64;
+        // SAFETY: it reads a register of the thread.
+        unsafe { asm!("mrs {}, fpcr", out(reg) register, options(nomem, nostack, preserves_flags)) };
+        register
+    }
+
+    #[inline]
+    pub fn write(register: Register) {
+        // SAFETY: the value is the default, which compiled code takes for granted, or what was read before and is in place
+        // again when the caller's code goes on.
+        unsafe { asm!("msr fpcr, {}", in(reg) register, options(nostack, preserves_flags)) };
+    }
+}
+
+/// No register that could say something else, or none that is known here.
+#[cfg(not(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse"), target_arch = "aarch64")))]
+mod control {
+    pub type Register = ();
+    pub const DEFAULT: Register = ();
+
+    #[inline]
+    pub fn is_default((): Register) -> bool {
+        true
+    }
+
+    #[inline]
+    pub fn read() -> Register {}
+
+    #[inline]
+    pub fn write((): Register) {}
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_environment_is_the_default_inside_and_as_before_outside() {
+        // Rounding up, denormals flushed, all exceptions trapped but the inexact and the denormal one.
+        let odd = 0xd140;
+        let inside = |odd| {
+            control::write(odd);
+            let seen = in_default_environment(|| control::read() & !0x3f);
+            let after = control::read();
+            control::write(control::DEFAULT);
+            (seen, after)
+        };
+        assert_eq!(inside(odd), (control::DEFAULT, odd));
+        assert_eq!(inside(control::DEFAULT | 1), (control::DEFAULT, control::DEFAULT | 1));
+        control::write(odd);
+        let panicked = std::panic::catch_unwind(|| in_default_environment(|| std::panic::resume_unwind(Box::new(()))));
+        let after = control::read();
+        control::write(control::DEFAULT);
+        assert!(panicked.is_err());
+        assert_eq!(after, odd);
+    }
+}
