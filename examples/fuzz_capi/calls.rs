@@ -75,11 +75,13 @@ impl Driver<'_> {
 
     pub(crate) fn test_triangles(&mut self, which: usize) -> Check {
         let mesh = self.mesh(which)?;
+        // Else the object itself is asked, whatever the pool does meanwhile.
+        let by_pool = self.rng.bool();
         let family = &mut self.families[which];
         let through = family.through();
         let (status, answer, pooled) = family.ask("TestTriangles", |i, moc| match through(i) {
-            Some(pool) => pool::test(pool, &mesh),
-            None => test(moc, &mesh),
+            Some(pool) if by_pool => pool::test(pool, &mesh),
+            _ => test(moc, &mesh),
         })?;
         check_prediction("TestTriangles", &mesh, status)?;
         check_answer("TestTriangles", family, status, answer)
@@ -95,11 +97,12 @@ impl Driver<'_> {
             (y0, y1) = (y0.min(y1), y0.max(y1));
         }
         let w = if rng.u8(..6) == 0 { hostile::float(rng) } else { rng.f32() * 12.0 };
+        let by_pool = rng.bool();
         let family = &mut self.families[which];
         let through = family.through();
         let (status, answer, pooled) = family.ask("TestRect", |i, moc| match through(i) {
-            Some(pool) => pool::rect(pool, [x0, y0, x1, y1], w),
-            None => rect(moc, [x0, y0, x1, y1], w),
+            Some(pool) if by_pool => pool::rect(pool, [x0, y0, x1, y1], w),
+            _ => rect(moc, [x0, y0, x1, y1], w),
         })?;
         ensure((status == OK) == family.size.is_some(), || format!("TestRect: status {status}"))?;
         check_answer("TestRect", family, status, answer)
@@ -130,9 +133,6 @@ impl Driver<'_> {
         })?;
         ensure((status == OK) == family.size.is_some(), || format!("ClearBuffer: status {status}"))?;
         family.empty |= status == OK;
-        if let Some(pool) = &mut family.pool {
-            pool.cleared |= status == OK;
-        }
         Ok(())
     }
 
@@ -230,9 +230,6 @@ impl Driver<'_> {
         ensure((status == OK) == near.is_finite(), || format!("SetNearClipPlane({near:e}): status {status}"))?;
         if status == OK {
             family.near = near;
-            if let Some(pool) = &mut family.pool {
-                pool.near = Some(near);
-            }
         }
         Ok(())
     }

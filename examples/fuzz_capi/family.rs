@@ -135,11 +135,8 @@ impl Family {
         let direct = (0..answers.len()).find(|&i| Some(i) != member).or(member).map_or(UNTOUCHED, |i| answers[i]);
         let same = |i: usize| Some(i) == member || answers[i] == direct;
         ensure((0..answers.len()).all(same), || format!("{name}: answers {answers:?}, pooled is {member:?}"))?;
-        // Of triangles that pass by every pixel, but whose boxes are hidden, VIEW_CULLED becomes OCCLUDED, too; and VISIBLE
-        // where they are hidden by what a clear, not done yet, takes away.
-        let cleared = self.pool.as_ref().is_some_and(|pool| pool.cleared);
-        let hidden =
-            |answer| [answer, direct].contains(&OCCLUDED) || cleared && (answer, direct) == (VISIBLE, VIEW_CULLED);
+        // Of triangles that pass by every pixel, but whose boxes are hidden, VIEW_CULLED becomes OCCLUDED, too.
+        let hidden = |answer| [answer, direct].contains(&OCCLUDED);
         let allowed = |answer| answer == direct || early && hidden(answer);
         ensure(pooled.is_none_or(allowed), || format!("{name}: the pool answers {pooled:?}, the others {direct}"))?;
         self.asked_early |= early && pooled.is_some();

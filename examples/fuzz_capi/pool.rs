@@ -23,10 +23,6 @@ pub struct Pool {
     pub member: usize,
     /// Nothing was submitted since it was flushed.
     pub settled: bool,
-    /// A clear was submitted since it was flushed.
-    pub cleared: bool,
-    /// The near plane that the next object gets.
-    pub near: Option<f32>,
     pub matrix: Option<[f32; 16]>,
     pub layout: MOC_VertexLayout,
     /// It is asked while it draws.
@@ -39,13 +35,13 @@ const PACKED: MOC_VertexLayout = MOC_VertexLayout { stride: 16, offset_y: 4, off
 
 impl Pool {
     pub fn new(handle: *mut MOC_Threadpool, asks_early: bool) -> Self {
-        let (matrix, layout, near) = (None, PACKED, None);
-        Self { handle, member: 0, settled: true, cleared: false, near, matrix, layout, asks_early, nearest: Vec::new() }
+        let (matrix, layout) = (None, PACKED);
+        Self { handle, member: 0, settled: true, matrix, layout, asks_early, nearest: Vec::new() }
     }
 
     /// All that was submitted is drawn.
     pub fn flushed(&mut self) {
-        (self.settled, self.cleared) = (true, false);
+        self.settled = true;
     }
 }
 
@@ -63,11 +59,16 @@ impl Driver<'_> {
         // SAFETY: a live pool.
         let status = unsafe { MOC_ThreadpoolFlush(pool.handle) } as i32;
         ensure(status == OK, || format!("ThreadpoolFlush: status {status}"))?;
+        self.flushed(which)
+    }
+
+    /// A call of the pool flushed it: all is drawn, and the arrays are written to again.
+    pub(crate) fn flushed(&mut self, which: usize) -> Check {
         self.submitted(which, true)?;
         if let Some(pool) = &mut self.families[which].pool {
             pool.flushed();
+            self.memory.lent_count = 0;
         }
-        self.memory.lent_count = 0;
         Ok(())
     }
 
@@ -149,7 +150,20 @@ impl Driver<'_> {
                 })?;
             }
             MOC_ThreadpoolCreate(1, 1, 1, 1, 0, &mut pool);
+            let (mut w, mut h) = (0, 0);
             let statuses = [
+                MOC_Flush(null()),
+                MOC_ThreadpoolCreateFrom(null(), &mut null_mut()),
+                MOC_ThreadpoolWorkOnce(null(), &mut answer),
+                MOC_ThreadpoolIsDone(null(), &mut answer),
+                MOC_ThreadpoolIsDone(pool, null_mut()),
+                MOC_ThreadpoolGetThreads(null(), &mut w),
+                MOC_ThreadpoolGetBins(null(), &mut w, &mut h),
+                MOC_ThreadpoolGetBins(pool, &mut w, null_mut()),
+                MOC_ThreadpoolRenderMesh(null(), null(), null(), 0, null(), 1, 0x1f, null()),
+                MOC_ThreadpoolRenderMeshChecked(null(), null(), 0, null(), 0, null(), 1, 0x1f, null()),
+                MOC_ThreadpoolTestMesh(null(), null(), null(), 0, null(), 1, 0x1f, null(), &mut answer),
+                MOC_ThreadpoolTestMeshChecked(null(), null(), 0, null(), 0, null(), 1, 0x1f, null(), &mut answer),
                 MOC_ThreadpoolCreate(1, 1, 1, 1, 0, null_mut()),
                 MOC_ThreadpoolWakeThreads(null()),
                 MOC_ThreadpoolSuspendThreads(null()),
@@ -202,11 +216,16 @@ impl Family {
     }
 }
 
-/// Draws a mesh with what is set. There is no answer.
+/// Draws a mesh, with what is set or with what it brings, which is the same. There is no answer.
 pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
+    let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);
     // SAFETY: a live pool; each pointer is null or valid, and the arrays stay as they are until it was flushed.
     let status = unsafe {
-        MOC_ThreadpoolRenderTriangles(pool, m.vertices, m.triangles, m.n_triangles, m.winding, m.clip_planes)
+        if n % 2 == 0 {
+            MOC_ThreadpoolRenderTriangles(pool, m.vertices, m.triangles, n, winding, planes)
+        } else {
+            MOC_ThreadpoolRenderMesh(pool, m.vertices, m.triangles, n, m.matrix, winding, planes, m.layout)
+        }
     };
     (status as i32, UNTOUCHED)
 }
@@ -214,9 +233,14 @@ pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
 /// Tests a mesh likewise.
 pub fn test(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     let mut answer = UNTOUCHED;
+    let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);
     // SAFETY: as in `render`.
     let status = unsafe {
-        MOC_ThreadpoolTestTriangles(pool, m.vertices, m.triangles, m.n_triangles, m.winding, m.clip_planes, &mut answer)
+        if n % 2 == 0 {
+            MOC_ThreadpoolTestTriangles(pool, m.vertices, m.triangles, n, winding, planes, &mut answer)
+        } else {
+            MOC_ThreadpoolTestMesh(pool, m.vertices, m.triangles, n, m.matrix, winding, planes, m.layout, &mut answer)
+        }
     };
     (status as i32, answer)
 }

@@ -54,7 +54,7 @@ impl Driver<'_> {
         match self.rng.u8(..100) {
             0..46 => self.render(which).and_then(|()| self.submitted(which, false)),
             46..50 => self.frame(which),
-            50..56 => self.clear(which).and_then(|()| self.submitted(which, true)),
+            50..56 => self.clear(which).and_then(|()| self.flushed(which)),
             56..62 => self.merge(which).and_then(|()| self.submitted(which, false)),
             62..74 => {
                 if family.pool.as_ref().is_some_and(|pool| !pool.asks_early) {
@@ -62,7 +62,8 @@ impl Driver<'_> {
                 }
                 if self.rng.bool() { self.test_rect(which) } else { self.test_triangles(which) }
             }
-            74..78 => self.set_near(which),
+            74..77 => self.set_near(which).and_then(|()| self.flushed(which)),
+            77 => self.work_once(which),
             78..86 => self.wake_or_suspend(which),
             86..88 => self.set_transform(which),
             88..91 => self.settle(which),
@@ -73,11 +74,10 @@ impl Driver<'_> {
         }
     }
 
-    /// A clear that waits, and behind it batches that are projected while what it clears is still there.
+    /// Batches that wait, behind a clear.
     fn frame(&mut self, which: usize) -> Check {
-        self.settle(which)?;
         self.wake(which, false)?;
-        self.clear(which).and_then(|()| self.submitted(which, true))?;
+        self.clear(which).and_then(|()| self.flushed(which))?;
         for _ in 0..self.rng.usize(2..16) {
             self.render(which).and_then(|()| self.submitted(which, false))?;
         }
@@ -87,7 +87,19 @@ impl Driver<'_> {
         self.wake(which, wakes)
     }
 
-    /// Gives the pool an object, and a near plane before or not.
+    /// One piece of what is pending, or nothing.
+    fn work_once(&mut self, which: usize) -> Check {
+        let Some(pool) = &self.families[which].pool else { return Ok(()) };
+        let (mut worked, mut done) = (UNTOUCHED, UNTOUCHED);
+        // SAFETY: a live pool, and places for the answers.
+        let statuses =
+            unsafe { [MOC_ThreadpoolWorkOnce(pool.handle, &mut worked), MOC_ThreadpoolIsDone(pool.handle, &mut done)] };
+        let good =
+            statuses.iter().all(|&status| status as i32 == OK) && [worked, done].iter().all(|n| [0, 1].contains(n));
+        ensure(good, || format!("working once: {statuses:?}, {worked}, {done}"))
+    }
+
+    /// Gives the pool an object, and then a near plane or not.
     fn attach(&mut self, which: usize) -> Check {
         let member = self.rng.usize(..self.families[which].members.len());
         let near = if self.rng.bool() { Some(self.rng.f32()) } else { None };
@@ -96,13 +108,13 @@ impl Driver<'_> {
         pool.member = member;
         // SAFETY: a live pool and a live object, which outlives the pool.
         let statuses = unsafe {
+            let attached = MOC_ThreadpoolSetBuffer(pool.handle, family.members[member]);
             let set = near.map(|near| MOC_ThreadpoolSetNearClipPlane(pool.handle, near));
-            [set.unwrap_or(MOC_Status::MOC_STATUS_OK), MOC_ThreadpoolSetBuffer(pool.handle, family.members[member])]
+            [set.unwrap_or(MOC_Status::MOC_STATUS_OK), attached]
         };
         ensure(statuses.iter().all(|&status| status as i32 == OK), || format!("attaching: {statuses:?}"))?;
-        pool.near = near.or(pool.near);
-        if let Some(near) = pool.near {
-            // The pool's object has it from the pool.
+        if let Some(near) = near {
+            // The pool's object has it from the pool; without that it keeps its own.
             for (_, &moc) in family.members.iter().enumerate().filter(|&(i, _)| i != member) {
                 // SAFETY: a live object that nobody else uses.
                 unsafe { MOC_SetNearClipPlane(moc, near) };
@@ -113,7 +125,7 @@ impl Driver<'_> {
         self.wake_or_suspend(which)
     }
 
-    /// Takes the object away: everything that needs one is refused, the near plane is kept.
+    /// Takes the object away: everything that needs one is refused.
     fn exchange(&mut self, which: usize) -> Check {
         let (mut answer, mut depth) = (UNTOUCHED, 0.0);
         let Some(pool) = &mut self.families[which].pool else { return Ok(()) };
@@ -123,7 +135,10 @@ impl Driver<'_> {
             let status = MOC_ThreadpoolSetBuffer(handle, null_mut()) as i32;
             let refused = [
                 MOC_ThreadpoolSetResolution(handle, 8, 8),
+                MOC_ThreadpoolSetNearClipPlane(handle, 1.0),
                 MOC_ThreadpoolClearBuffer(handle),
+                MOC_ThreadpoolRenderMesh(handle, null(), null(), 0, null(), 1, 0x1f, null()),
+                MOC_ThreadpoolTestMesh(handle, null(), null(), 0, null(), 1, 0x1f, null(), &mut answer),
                 MOC_ThreadpoolRenderTriangles(handle, null(), null(), 0, 1, 0x1f),
                 MOC_ThreadpoolTestRect(handle, 0.0, 0.0, 1.0, 1.0, 1.0, &mut answer),
                 MOC_ThreadpoolTestTriangles(handle, null(), null(), 0, 1, 0x1f, &mut answer),
@@ -177,7 +192,8 @@ impl Driver<'_> {
             };
             ensure(status as i32 == OK, || format!("waking ({wakes}): status {status:?}"))?;
         }
-        Ok(())
+        // What was submitted is drawn before the threads sleep.
+        if wakes { Ok(()) } else { self.flushed(which) }
     }
 
     /// A matrix for the meshes that take what is set, and a layout that no mesh has.

@@ -229,10 +229,10 @@ impl CullingThreadpool {
     /// # Errors
     /// [`Error::InvalidNumber`] for NaN or an infinity: the plane stays where it was. [`Error::NoBuffer`] where the pool has no object.
     pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
+        self.flush();
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
         }
-        self.flush();
         let pass = self.gate.pass();
         let target = pass.as_ref().ok_or(Error::NoBuffer)?;
         let _recording = self.gate.recording(target);
