@@ -7,6 +7,8 @@
 /* The functions of src/capi, by `UPDATE_HEADER=1 cargo test --test header`. */
 #undef MOC_GetAbiVersion
 #undef MOC_StatusText
+#undef MOC_SetMessageCallback
+#undef MOC_GetLastStatus
 #undef MOC_DefaultSettings
 #undef MOC_Create
 #undef MOC_Destroy
@@ -17,6 +19,7 @@
 #undef MOC_GetNearClipPlane
 #undef MOC_GetImplementation
 #undef MOC_GetUpdateRule
+#undef MOC_Flush
 #undef MOC_GetAllocFreeCallback
 #undef MOC_ClearBuffer
 #undef MOC_MergeBuffer
@@ -30,14 +33,20 @@
 #undef MOC_ComputePixelDepthBuffer
 #undef MOC_ComputePixelDepthBufferChecked
 #undef MOC_GetStatistics
+#undef MOC_GetDroppedTriangles
 #undef MOC_BinTriangles
 #undef MOC_BinTrianglesChecked
 #undef MOC_TransformVertices
 #undef MOC_ThreadpoolCreate
+#undef MOC_ThreadpoolCreateFrom
 #undef MOC_ThreadpoolDestroy
 #undef MOC_ThreadpoolWakeThreads
 #undef MOC_ThreadpoolSuspendThreads
 #undef MOC_ThreadpoolFlush
+#undef MOC_ThreadpoolWorkOnce
+#undef MOC_ThreadpoolIsDone
+#undef MOC_ThreadpoolGetThreads
+#undef MOC_ThreadpoolGetBins
 #undef MOC_ThreadpoolSetBuffer
 #undef MOC_ThreadpoolSetResolution
 #undef MOC_ThreadpoolSetNearClipPlane
@@ -45,6 +54,10 @@
 #undef MOC_ThreadpoolSetVertexLayout
 #undef MOC_ThreadpoolClearBuffer
 #undef MOC_ThreadpoolRenderTriangles
+#undef MOC_ThreadpoolRenderMesh
+#undef MOC_ThreadpoolRenderMeshChecked
+#undef MOC_ThreadpoolTestMesh
+#undef MOC_ThreadpoolTestMeshChecked
 #undef MOC_ThreadpoolTestRect
 #undef MOC_ThreadpoolTestTriangles
 #undef MOC_ThreadpoolComputePixelDepthBuffer
