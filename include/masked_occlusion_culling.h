@@ -1383,10 +1383,11 @@ MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
 
 /**
  * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
- * format. `path` is what the system calls the file, UTF-8 on Windows. Setting another near plane or resolution ends the
- * recording, once it holds a call; merges and lists are not recorded.
+ * format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on as they are. Setting another near
+ * plane or resolution ends the recording, once it holds a call; merges and lists are not recorded.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE where
+ * the file cannot be made, or on Windows `path` is not UTF-8.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
@@ -1426,11 +1427,11 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
                                      int32_t result);
 
 /**
- * Reads a recording and writes it to `out` (null there on errors). The caller gives it back to MOC_RecordingDestroy.
- * Several threads may read from one recording at once.
+ * Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
+ * The caller gives the recording back to MOC_RecordingDestroy. Several threads may read from one recording at once.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that
- * is empty, cut or broken.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where the file cannot be read, or on Windows `path` is not UTF-8,
+ * MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
  *
  * Required:
  * `path` is null or ends with a zero, `out` is null or can be written.

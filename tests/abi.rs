@@ -9,7 +9,6 @@ mod native;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::mem::offset_of;
-use std::process::Command;
 
 use masked_occlusion_culling::capi::*;
 
