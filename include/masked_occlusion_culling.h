@@ -210,7 +210,7 @@ enum MOC_Implementation
      */
     MOC_SCALAR = -1,
     /**
-     * x86-64 baseline.
+     * SSE2, the baseline of x86-64 and i686.
      */
     MOC_SSE2 = 0,
     /**
@@ -913,9 +913,9 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
  *
  * Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count,
- * MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that are not at a multiple of 4 bytes,
- * MOC_STATUS_NO_BUFFER.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
+ * or, with pointers of 32 bits, more indices than memory holds, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
+ * that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -965,7 +965,7 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
  *
  * Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
  * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
- * its `capacity`; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
+ * its `capacity` or what memory holds; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -1103,7 +1103,8 @@ MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
  *
  * Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
  * a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
- * alignment: nothing is binned. MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
+ * alignment; MOC_STATUS_INVALID_SIZE also for a capacity above what memory holds: nothing is binned.
+ * MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
  *
  * Required:
  * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -1155,7 +1156,7 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
  * bytes a vertex), its last offset names z. All pointers may lie at any address.
  *
  * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
- * MOC_STATUS_INVALID_LAYOUT for a negative stride.
+ * MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory holds.
  *
  * Required:
  * `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
