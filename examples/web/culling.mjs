@@ -95,7 +95,7 @@ export class Culling {
         return this.word(this.out);
     }
 
-    // 1/w of every pixel; a view of memory that the next call writes over.
+    // 1/w of every pixel, -1 where nothing was drawn, as bits of floats: a view of memory that the next call writes over.
     depth() {
         const count = this.pixels[0] * this.pixels[1];
         this.depthAt ??= this.arena.allocate(4 * count);
