@@ -302,6 +302,7 @@ impl MaskedOcclusionCulling {
     ///
     /// # Errors
     /// [`Error::NoBuffer`].
+    #[inline(always)]
     pub fn test_rect(
         &self,
         x_min: f32,

@@ -5,10 +5,16 @@
 //! end the program. So an exported function looks at the control register, which costs a nanosecond, and only where it
 //! says something else sets it, and sets it back at the end.
 
+/// Is the calling thread in the default floating-point environment?
+#[inline]
+pub(crate) fn is_default() -> bool {
+    control::is_default(control::read())
+}
+
 /// Runs `body` in the default floating-point environment.
 #[inline]
 pub(crate) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
-    if control::is_default(control::read()) { body() } else { elsewhere(body) }
+    if is_default() { body() } else { elsewhere(body) }
 }
 
 #[cold]

@@ -112,7 +112,7 @@ pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
 /// Runs the body of an exported function; a panic becomes a status. The closure has to stand in that function: messages take
 /// the name from there.
 pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
-    run(messages::function_of::<F>, body)
+    in_default_environment(|| run(messages::function_of::<F>, body))
 }
 
 /// As [`guard`], for calls that answer: `result` gets the answer, or "visible" where there is none.
@@ -120,6 +120,19 @@ pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
 /// # Safety
 /// `result` is null or can be written.
 pub(super) unsafe fn guard_result<F: FnOnce() -> Result<CullingResult, Refusal>>(
+    result: *mut i32,
+    body: F,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    in_default_environment(|| unsafe { guard_result_as_set(result, body) })
+}
+
+/// The same for a caller that is in the default floating-point environment.
+///
+/// # Safety
+/// As there.
+#[inline]
+pub(super) unsafe fn guard_result_as_set<F: FnOnce() -> Result<CullingResult, Refusal>>(
     result: *mut i32,
     body: F,
 ) -> MOC_Status {
@@ -137,7 +150,7 @@ pub(super) unsafe fn guard_result<F: FnOnce() -> Result<CullingResult, Refusal>>
 
 #[inline]
 fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -> MOC_Status {
-    match in_default_environment(|| catch_unwind(AssertUnwindSafe(body))) {
+    match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => {
             messages::done();
             MOC_Status::MOC_STATUS_OK

@@ -39,6 +39,8 @@ pub(super) struct Crew {
     progress: Condvar,
     /// Counts what was finished.
     finished: Glance,
+    /// Counts what was submitted and is worth a thread's while.
+    news: Glance,
 }
 
 struct State {
@@ -82,7 +84,13 @@ impl Crew {
             suspended: true,
             stopped: false,
         };
-        Self { state: Mutex::new(state), work: Condvar::new(), progress: Condvar::new(), finished: Glance::default() }
+        Self {
+            state: Mutex::new(state),
+            work: Condvar::new(),
+            progress: Condvar::new(),
+            finished: Glance::default(),
+            news: Glance::default(),
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -100,14 +108,32 @@ impl Crew {
         state.threads += 1;
         // Woken on the processor of who woke it the last time, and did not leave it.
         let (mut in_turn, mut may_leave) = (false, true);
+        // It waited a moment for more, since it did something or slept.
+        let mut waited = false;
         while !state.stopped {
-            let task = if state.suspended { None } else { state.schedule.claim(number) };
+            let task = match state.suspended {
+                true => None,
+                false if waited => state.schedule.claim(number),
+                false => state.schedule.claim_worthwhile(number),
+            };
             state = match task {
-                Some(task) => self.perform(state, task),
+                Some(task) => {
+                    waited = false;
+                    self.perform(state, task)
+                }
+                // Small calls follow each other faster than a thread wakes, and a batch of several costs less.
+                None if !waited && !state.suspended => {
+                    waited = true;
+                    let count = self.news.count();
+                    drop(state);
+                    self.news.wait(count);
+                    self.lock()
+                }
                 None => {
                     state.idle += 1;
                     let mut state = self.work.wait(state).unwrap_or_else(PoisonError::into_inner);
                     state.idle -= 1;
+                    waited = false;
                     state.woken = state.woken.saturating_sub(1);
                     // Taken, so that it does not count again where all are woken.
                     let waker = state.waker.take();
@@ -229,6 +255,7 @@ impl Crew {
                     Ok(worthwhile) => {
                         state.begin(was_done);
                         if worthwhile {
+                            self.news.changed();
                             self.wake(&mut state);
                         } else {
                             self.leave_to_threads(&mut state);

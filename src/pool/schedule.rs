@@ -174,6 +174,11 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// Something to do for a thread, if there is.
     pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
+        self.claim_worthwhile(thread).or_else(|| self.claim_batch(0))
+    }
+
+    /// The same, but for a batch that takes more calls and is not worth a thread's while yet.
+    pub fn claim_worthwhile(&mut self, thread: usize) -> Option<Task<C, W>> {
         #[cfg(test)]
         assert!(!BREAKS.load(core::sync::atomic::Ordering::Relaxed), "broken on purpose");
         // A bin that the thread drew in last has its tiles in the thread's cache.
@@ -184,9 +189,7 @@ impl<C, W: Clone> Schedule<C, W> {
         if let Some(bin) = far(own, LEAD).or(far(any, STRANGERS_LEAD)) {
             return Some(self.claim_bin(bin, thread));
         }
-        self.claim_batch(WORTHWHILE)
-            .or_else(|| own.or(any).map(|bin| self.claim_bin(bin, thread)))
-            .or_else(|| self.claim_batch(0))
+        self.claim_batch(WORTHWHILE).or_else(|| own.or(any).map(|bin| self.claim_bin(bin, thread)))
     }
 
     /// The first batch that nobody keeps, unless it is the last one and weighs less.
