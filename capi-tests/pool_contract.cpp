@@ -2,7 +2,7 @@
 // returns, how many arrays are in use, that threads that are awake draw without being asked, and that pool and object may be used
 // beside each other.
 #include "check.h"
-#include "watchdog.h"
+#include "deadline.h"
 
 #include "CullingThreadpool.h"
 
@@ -427,7 +427,7 @@ void DirectUseOfABusyObject()
 
 int main()
 {
-    watchdog(300); // a call that hangs is a failure, too
+    deadline(300);
     ClearThenQuery();
     ClearThenDraw();
     FlushThenFree();

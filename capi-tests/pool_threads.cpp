@@ -1,7 +1,7 @@
 // Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, jobs of the engine do the
 // pool's work, and threads have names and say when they start.
 #include "check.h"
-#include "watchdog.h"
+#include "deadline.h"
 
 #include "CullingThreadpool.h"
 
@@ -273,7 +273,7 @@ void Threads()
 
 int main()
 {
-    watchdog(300); // a call that hangs is a failure, too
+    deadline(300);
     EachThreadItsMatrix();
     CallsWithTheirMatrix();
     WorkOfTheProgramsOwnThreads();

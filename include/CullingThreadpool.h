@@ -23,7 +23,8 @@
  * all, it waits for WakeThreads, Flush, SuspendThreads or WorkOnce. The threads sleep when there is nothing to do,
  * between SuspendThreads and WakeThreads, and before the first WakeThreads.
  *
- * The object that the pool draws into may be queried directly at any time, by any thread. It may be drawn into
+ * The object that the pool draws into may be queried directly by any thread, but not while SetBuffer or
+ * SetResolution runs. It may be drawn into
  * directly while nobody calls the pool: its methods wait for what is in flight first. Pool and object may be destroyed
  * in either order; whichever goes first, what was submitted is drawn before, for which the arrays still have to be
  * there.
@@ -146,7 +147,7 @@ public:
      */
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
-    /** SetResolution of the object, after what was submitted is drawn. */
+    /** SetResolution of the object, after what was submitted is drawn. Meanwhile nobody queries the object itself. */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {
         MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;
@@ -230,9 +231,12 @@ public:
      */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
-        for (unsigned int i = 0; others != nullptr && i < count; i++)
-            MOC_Flush(others[i]);
-        MOC_ThreadpoolMergeBuffers(mPool, others, count);
+        do
+        {
+            for (unsigned int i = 0; others != nullptr && i < count; i++)
+                if (others[i] != nullptr)
+                    MOC_Flush(others[i]);
+        } while (MOC_ThreadpoolMergeBuffers(mPool, others, count) == MOC_STATUS_BUSY);
     }
 
 private:

@@ -16,8 +16,8 @@ pub(crate) trait Pool: Send + Sync {
     /// Waits until everything that was submitted is drawn.
     fn flush(&self);
 
-    /// Forgets its object after a flush.
-    fn forget(&self);
+    /// Forgets the object with this attachment after a flush.
+    fn forget(&self, attachment: &Attachment);
 
     /// Tests a rectangle against what is drawn by now.
     fn test_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error>;
@@ -52,7 +52,8 @@ impl Attachment {
 
     /// The answer to a query of the buffer, unless the pool had something in flight meanwhile.
     ///
-    /// What a query reads while a pool draws is compared, never used as an address, and its answer is dropped here.
+    /// A draw that begins meanwhile writes what the query reads: a race, as of any seqlock whose data is not atomic. What is read is
+    /// compared and never used as an address, and the answer is dropped here.
     #[inline(always)]
     pub fn undisturbed<R>(&self, ask: impl FnOnce() -> R) -> Option<R> {
         let before = self.turns.load(Ordering::Acquire);
@@ -68,7 +69,7 @@ impl Attachment {
     /// The pool has something in flight from now on, or nothing any more. Called in turn, under a lock of the pool.
     pub fn turn(&self) {
         self.turns.fetch_add(1, Ordering::AcqRel);
-        // The count is written before the buffer is.
+        // The count is written before the buffer is, which other threads do after they took the lock under which this is called.
         fence(Ordering::Release);
     }
 
@@ -106,7 +107,7 @@ impl Attachment {
     /// The object goes away: its pool draws what was submitted and has no object any more.
     pub fn leave(&self) {
         if let Some(pool) = self.pool() {
-            pool.forget();
+            pool.forget(self);
             self.detach();
         }
     }

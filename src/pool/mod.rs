@@ -16,7 +16,7 @@
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
 //! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
-//! to do, it looks about for 20 microseconds before it sleeps. Threads beyond the processors are not started: they would only take
+//! to do, it waits 20 microseconds for more before it sleeps, as threads of the pool do. Threads beyond the processors are not started: they would only take
 //! turns with the others, and interrupt one that holds a bin.
 
 mod crew;
