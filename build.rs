@@ -1,5 +1,5 @@
-//! Refuses a build whose interface version does not follow the crate's version, tells the tests which target the library
-//! was built for, so that they compile C and C++ for the same one, and hands on the prefix of the exported names.
+//! Refuses a build whose interface version does not follow the crate's version, tells the tests which target the library was
+//! built for, so that they compile C and C++ for the same one, and passes on the prefix of the exported names.
 
 use std::env;
 use std::fs;
@@ -29,8 +29,8 @@ fn main() {
     println!("cargo:rustc-env={PREFIX}={}", symbol_prefix());
 }
 
-/// What the names of the exported functions begin with: `acme_` with `MOC_SYMBOL_PREFIX=acme_ cargo build`, nothing by
-/// default. The C and C++ headers take the same from a macro of this name.
+/// The prefix of the exported function names: `acme_` with `MOC_SYMBOL_PREFIX=acme_ cargo build`, empty by default. The C and
+/// C++ headers take it from a macro of the same name.
 fn symbol_prefix() -> String {
     let prefix = match env::var(PREFIX) {
         Err(env::VarError::NotPresent) => String::new(),
@@ -38,6 +38,9 @@ fn symbol_prefix() -> String {
     };
     let is_identifier = !prefix.starts_with(|c: char| c.is_ascii_digit())
         && prefix.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    assert!(is_identifier, "{PREFIX} is {prefix:?}: a prefix has letters, digits and underscores, and no digit first");
+    assert!(
+        is_identifier,
+        "{PREFIX} is {prefix:?}: a prefix consists of letters, digits and underscores, and does not start with a digit"
+    );
     prefix
 }

@@ -1,5 +1,5 @@
-// Allocation callbacks that throw, in a program whose class has virtual methods: Create and SetResolution throw the same
-// again, nothing leaks, and the object keeps the buffer that it had.
+// Allocation callbacks that throw, in a program whose class has virtual methods: Create and SetResolution rethrow, nothing
+// leaks, and the object keeps its buffer.
 #include "check.h"
 
 #include <stddef.h>
@@ -14,8 +14,8 @@ namespace
 
 typedef MaskedOcclusionCulling MOC;
 
-int balance = 0;  // blocks that are not freed
-int allowed = -1; // how many more there are before the next is denied; below 0: any number
+int balance = 0;  // blocks not yet freed
+int allowed = -1; // allocations left before one fails; negative: unlimited
 
 void *Alloc(size_t alignment, size_t size)
 {
@@ -58,7 +58,7 @@ int main()
         CHECK(moc == nullptr);
         CHECK_EQ(balance, 0);
     }
-    // The library's object and the one around it.
+    // The library's object and the one that wraps it.
     CHECK_EQ(denied, 2);
     CHECK(moc != nullptr);
 

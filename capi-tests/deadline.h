@@ -1,4 +1,4 @@
-/* A call that hangs is a failure too: the process ends when its time is up. C99 and C++11. */
+/* A call that hangs is a failure too: the process ends when its time limit is up. C99 and C++11. */
 #ifndef CAPI_TESTS_DEADLINE_H
 #define CAPI_TESTS_DEADLINE_H
 
@@ -11,7 +11,7 @@
 static DWORD WINAPI deadline_wait(LPVOID seconds)
 {
     Sleep(1000 * *(unsigned int *)seconds);
-    fprintf(stderr, "the time is up\n");
+    fprintf(stderr, "time limit exceeded\n");
     TerminateProcess(GetCurrentProcess(), 124);
     return 0;
 }
@@ -23,7 +23,7 @@ static inline void deadline(unsigned int seconds)
     kept = seconds;
     thread = CreateThread(NULL, 0, deadline_wait, &kept, 0, NULL);
     if (thread == NULL) {
-        fprintf(stderr, "no thread to watch the time\n");
+        fprintf(stderr, "cannot start the deadline thread\n");
         TerminateProcess(GetCurrentProcess(), 1);
     }
     CloseHandle(thread);

@@ -1,5 +1,6 @@
-// Threads whose floating-point environment an engine changed: other rounding, denormals flushed, exceptions that raise a
-// signal. Draws, tests, merges and pools give the same bits as without, nothing is raised, and the environment stays.
+// Threads whose floating-point environment was changed by an engine: other rounding modes, denormals flushed, exceptions that
+// raise a signal. Draws, tests, merges and pools give the same bits as in the default environment, nothing is raised, and the
+// environment is preserved.
 #include "check.h"
 
 #include "CullingThreadpool.h"
@@ -102,14 +103,14 @@ int main()
             const Result result = Run(implementation);
             CHECK_EQ(fegetround(), rounding);
             fesetround(FE_TONEAREST);
-            // TestRect's arguments were rounded otherwise by this program: only they may differ.
+            // This program itself rounded TestRect's arguments differently, so only those answers may differ.
             Result same = result;
             for (size_t i = 1; i < same.answers.size(); i += 2)
                 same.answers[i] = expected.answers[i];
             CHECK(same == expected);
         }
 #if HAS_MXCSR
-        // Flush to zero and denormals are zero; the traps for invalid operations, divisions by zero and overflow.
+        // Flush-to-zero and denormals-are-zero; traps for invalid operation, division by zero and overflow.
         for (unsigned int control : {0x8000u | 0x0040u | 0x1f80u, 0x1f80u & ~(0x0080u | 0x0200u | 0x0400u)}) {
             _mm_setcsr(control);
             const Result result = Run(implementation);

@@ -15,7 +15,7 @@
 #include <unistd.h>
 #endif
 
-/* The unit of protection. */
+/* The page size. */
 static inline size_t guarded_page(void)
 {
 #ifdef _WIN32
@@ -27,7 +27,7 @@ static inline size_t guarded_page(void)
 #endif
 }
 
-/* Whole pages that can be read and written; null where there are none. */
+/* Whole pages, readable and writable; null if none can be had. */
 static inline unsigned char *guarded_map(size_t size)
 {
 #ifdef _WIN32
@@ -38,7 +38,7 @@ static inline unsigned char *guarded_map(size_t size)
 #endif
 }
 
-/* From now on it is a crash to read or write this page. */
+/* From now on, reading or writing this page crashes. */
 static inline void guarded_forbid(unsigned char *page, size_t size)
 {
 #ifdef _WIN32

@@ -228,7 +228,7 @@ static void wrong_integers(void)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
-/* Where pointers have 32 bits: counts of arrays that are larger than any array. They are refused before anything is read. */
+/* With 32-bit pointers: counts larger than any array can be. They are refused before anything is read. */
 static void larger_than_memory(void)
 {
 #if UINTPTR_MAX <= 0xffffffffu
@@ -312,7 +312,7 @@ static void layouts(void)
     const MOC_VertexLayout negative = {-16, 4, 12}, zero = {0, 4, 12}, wide = {INT_MAX, 4, 12}, back = {16, 4, -12};
     MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER);
     const uint32_t first[3] = {0, 0, 0};
-    uint64_t words[32], list_words[8]; /* aligned, so that what lies a byte further is not */
+    uint64_t words[32], list_words[8]; /* aligned, so that one byte further is misaligned */
     unsigned char *const bytes = (unsigned char *)words, *const list_bytes = (unsigned char *)list_words;
     float quad[16], out[16];
     int32_t r;

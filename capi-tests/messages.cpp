@@ -1,5 +1,5 @@
-// What is refused is silent, unless the program asks: a status of the thread's last call, and a callback that is told what was
-// wrong with which argument of which function.
+// Refusals are silent unless the program asks: the status of the thread's last call, and a callback that receives the function,
+// the argument and what was wrong with it.
 #include "check.h"
 
 #include "CullingThreadpool.h"
@@ -31,7 +31,7 @@ void Listen(void *user, int status, const char *message)
     told.push_back(Told{status, message, std::this_thread::get_id()});
 }
 
-// The one message that came, if it is of this status and begins so, goes; anything else is an error.
+// Expects exactly one message, with this status and this beginning, and removes it; anything else is an error.
 void Expect(int line, int status, const std::string &beginning)
 {
     const bool one = told.size() == 1 && told[0].status == status && told[0].message.compare(0, beginning.size(), beginning) == 0;
@@ -49,7 +49,7 @@ void Expect(int line, int status, const std::string &beginning)
 
 const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
 
-// Nothing is printed, thrown or told before somebody asks; the status is there all the same.
+// Nothing is printed, thrown or reported before a callback is set; the status is available all the same.
 void Silent()
 {
     CHECK_EQ(MOC::GetLastStatus(), MOC_STATUS_OK);
@@ -95,7 +95,7 @@ void WhatIsRefused()
     moc->RenderTriangles(quad, nullptr, 2);
     EXPECT(MOC_STATUS_NULL_POINTER, "MOC_RenderTriangles: triangles is null");
     moc->RenderTriangles(quad, reinterpret_cast<const unsigned int *>(reinterpret_cast<const char *>(QUAD) + 1), 1);
-    EXPECT(MOC_STATUS_INVALID_LAYOUT, "MOC_RenderTriangles: triangles is not at a multiple of 4");
+    EXPECT(MOC_STATUS_INVALID_LAYOUT, "MOC_RenderTriangles: triangles is not aligned to 4");
     moc->RenderTriangles(quad, QUAD, -1);
     EXPECT(MOC_STATUS_INVALID_SIZE, "MOC_RenderTriangles: n_triangles");
     moc->RenderTriangles(quad, QUAD, 2, nullptr, static_cast<MOC::BackfaceWinding>(7));
@@ -107,7 +107,7 @@ void WhatIsRefused()
     moc->MergeBuffer(nullptr);
     EXPECT(MOC_STATUS_NULL_POINTER, "MOC_MergeBuffer: the other object is null");
     moc->ComputePixelDepthBuffer(nullptr, false);
-    EXPECT(MOC_STATUS_NULL_POINTER, "MOC_ComputePixelDepthBuffer: the pointer for the answer is null");
+    EXPECT(MOC_STATUS_NULL_POINTER, "MOC_ComputePixelDepthBuffer: the output pointer is null");
 
     float data[9 * 1];
     MOC::TriList list = {1, 0, data};
@@ -134,7 +134,7 @@ void WhatIsRefused()
     MOC::Destroy(moc);
 }
 
-// Rectangles that nobody means are not refused, and told all the same.
+// Rectangles that are probably a mistake are not refused, but are reported.
 void OddRectangles()
 {
     MOC *moc = MOC::Create();
@@ -146,7 +146,7 @@ void OddRectangles()
     EXPECT(MOC_STATUS_OK, "MOC_TestRect: ymin is above ymax");
     CHECK(moc->TestRect(-0.5f, nan, 0.5f, 0.5f, 5) == MOC::VISIBLE);
     EXPECT(MOC_STATUS_OK, "MOC_TestRect: a number is NaN");
-    // What is meant: a box that reaches through the near plane, edges off screen, an ordinary visible one.
+    // Not reported: a box that crosses the near plane, edges off screen, an ordinary visible box.
     moc->TestRect(-1, -1, 1, 1, 0);
     moc->TestRect(-inf, -inf, inf, inf, 5);
     moc->TestRect(-0.5f, -0.5f, 0.5f, 0.5f, 5);
@@ -177,7 +177,7 @@ void Pool()
     MOC::Destroy(moc);
 }
 
-// A callback may call the library; what is refused of that is not told, and the status is that of the outer call.
+// A callback may call the library; refusals of those calls are not reported, and the status is that of the outer call.
 int depth = 0;
 void Recursive(void *user, int, const char *)
 {
@@ -185,7 +185,7 @@ void Recursive(void *user, int, const char *)
     MOC *moc = static_cast<MOC *>(user);
     moc->SetResolution(0, 0);
     CHECK_EQ(moc->GetLastStatus(), MOC_STATUS_INVALID_SIZE);
-    // Not called under a lock.
+    // The callback is not called under a lock.
     MOC::SetMessageCallback(Recursive, user);
 }
 
@@ -198,7 +198,7 @@ void CallbacksThatCall()
     CHECK_EQ(moc->GetLastStatus(), MOC_STATUS_NO_BUFFER);
     moc->ClearBuffer();
     CHECK_EQ(depth, 2);
-    // A note of a call that is not refused does not change that it was not.
+    // A message about a call that was not refused leaves its status OK.
     moc->SetResolution(64, 64);
     moc->TestRect(1, 1, -1, -1, 1);
     CHECK_EQ(depth, 3);
@@ -209,7 +209,7 @@ void CallbacksThatCall()
 std::atomic<int> heard(0);
 void Count(void *user, int, const char *) { static_cast<std::atomic<int> *>(user)->fetch_add(1); }
 
-// Each thread has a status of its own, and all tell the same callback, while another one takes it away and puts it back.
+// Each thread has its own status, and all threads report to the same callback while another thread removes and restores it.
 void Threads()
 {
     const int threads = 4, rounds = 2000;
@@ -239,7 +239,7 @@ void Threads()
     ends = true;
     changes.join();
     CHECK(heard <= threads * rounds / 2);
-    // And all of them where nobody changes it.
+    // Every message arrives when the callback does not change.
     heard = 0;
     MOC::SetMessageCallback(Count, &heard);
     for (int i = 0; i < 100; ++i)

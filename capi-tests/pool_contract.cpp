@@ -1,6 +1,6 @@
-// What engines rely on in CullingThreadpool, as the header that ours replaces promises it: what holds when a call that flushes
-// returns, how many arrays are in use, that threads that are awake draw without being asked, and that pool and object may be used
-// beside each other.
+// What engines rely on in CullingThreadpool, as promised by the header that this one replaces: what holds when a flushing call
+// returns, how many arrays are in use, that awake threads draw without a further call, and that pool and object may be used
+// side by side.
 #include "check.h"
 #include "deadline.h"
 
@@ -51,7 +51,7 @@ std::vector<float> Depth(const MOC *moc)
     return depth;
 }
 
-// A pool of two threads of its own, also on machines with two processors.
+// A pool with two worker threads, even on a machine with two processors.
 struct Setup
 {
     MOC *moc;
@@ -71,7 +71,7 @@ struct Setup
     void Draw(const Wall &wall = WALL) { pool->RenderTriangles(wall.vertices, QUAD, 2); }
 };
 
-// Asks until it holds. Threads get to run within a minute, if they do at all.
+// Polls until the condition holds. Worker threads that run at all do so within a minute.
 template <class Condition> bool Soon(Condition condition)
 {
     for (int i = 0; i < 60000; i++) {
@@ -82,7 +82,7 @@ template <class Condition> bool Soon(Condition condition)
     return false;
 }
 
-// After ClearBuffer the buffer is clear, also for who asks the object itself.
+// After ClearBuffer the buffer is clear, also when the object itself is queried.
 void ClearThenQuery()
 {
     int lies = 0;
@@ -119,7 +119,7 @@ void ClearThenDraw()
     CHECK_EQ(lost, 0);
 }
 
-// After each call that flushes the arrays may be overwritten and freed: what is drawn is what they held before.
+// After each flushing call the arrays may be overwritten and freed: what was drawn is what they held before.
 void FlushThenFree()
 {
     MOC *other = Make();
@@ -146,7 +146,7 @@ void FlushThenFree()
         case 4: s.pool->SetResolution(640, 480); break;
         default: s.pool->Flush(); break;
         }
-        // Nearer, everywhere: drawn from now on it would hide what is nearer than the wall.
+        // Nearer, everywhere: if it were drawn after this, it would hide what is nearer than the wall.
         for (unsigned int i = 0; i < 100; i++)
             quad_at(&vertices[16 * i], -3, -3, 3, 3, 1);
         wrong += s.moc->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 3) == MOC::OCCLUDED;
@@ -157,7 +157,7 @@ void FlushThenFree()
     MOC::Destroy(other);
 }
 
-// The object may be destroyed before the pool, or before the pool gets another one, with nothing in flight or with something.
+// The object may be destroyed before the pool, or before the pool gets another object, with or without work in flight.
 void DestroyInAnyOrder()
 {
     for (int way = 0; way < 24; way++) {
@@ -171,7 +171,7 @@ void DestroyInAnyOrder()
         if (way % 4 < 2)
             pool->ClearBuffer();
         MOC::Destroy(a);
-        // It has no object now, which is silent.
+        // The pool has no object now, and calls fail silently.
         pool->RenderTriangles(WALL.vertices, QUAD, 2);
         pool->ClearBuffer();
         CHECK(pool->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 10) == MOC::VISIBLE);
@@ -183,7 +183,7 @@ void DestroyInAnyOrder()
                 pool->Flush();
         }
         pool.reset();
-        // What was submitted is drawn, and the object is its owner's again.
+        // Everything submitted is drawn, and the owner may use the object directly again.
         CHECK(Hidden(b) == (way % 6 < 3));
         b->ClearBuffer();
         CHECK(!Hidden(b));
@@ -197,7 +197,7 @@ void DestroyInAnyOrder()
     }
 }
 
-// A ring of one array more than maxJobs needs no Flush, whatever the size of the calls.
+// A ring of maxJobs + 1 arrays needs no Flush, whatever the size of the calls.
 void Ring()
 {
     int wrong = 0;
@@ -206,7 +206,7 @@ void Ring()
             Setup s(threads, jobs);
             MOC *one = Make();
             const unsigned int slots = jobs + 1;
-            // A small mesh, or one that is cut into parts.
+            // A small mesh, or one large enough to be split into parts.
             enum { MOST = 900 };
             std::vector<float> vertices(static_cast<size_t>(slots) * 16 * MOST);
             std::vector<unsigned int> indices(static_cast<size_t>(slots) * 6 * MOST);
@@ -240,7 +240,8 @@ void Ring()
     CHECK_EQ(wrong, 0);
 }
 
-// What is submitted to threads that are awake is drawn without another call, however little it is; SuspendThreads draws it.
+// Work submitted while threads are awake is drawn without another call, however little it is; SuspendThreads draws what is
+// left.
 void WithoutFlush()
 {
     Setup s;
@@ -250,7 +251,7 @@ void WithoutFlush()
     for (int k = 0; k < 40; k++) {
         s.pool->WakeThreads();
         s.pool->ClearBuffer();
-        // Asleep or not when the calls come.
+        // The threads may or may not be asleep when the calls come.
         if (k % 4 == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         if (k % 8 == 7) {
@@ -275,7 +276,7 @@ void WithoutFlush()
     }
     CHECK_EQ(late, 0);
     CHECK_EQ(parked, 0);
-    // Work that is left behind by a caller who helped, because there was no room.
+    // Work left behind by a caller that helped because there was no room.
     Setup narrow(1, 1);
     narrow.pool->WakeThreads();
     for (int k = 0; k < 50; k++) {
@@ -286,7 +287,7 @@ void WithoutFlush()
     MOC::Destroy(other);
 }
 
-// An object keeps its own near plane when a pool takes it.
+// An object keeps its near plane when it is set as a pool's buffer.
 void NearPlane()
 {
     MOC *a = Make(), *b = Make();
@@ -308,7 +309,8 @@ void NearPlane()
     MOC::Destroy(b);
 }
 
-// Other threads ask the object itself while its pool draws and clears. All that is drawn is in the left half, between 5 and 15.
+// Other threads query the object itself while its pool draws and clears. Everything drawn is in the left half, between 5 and
+// 15.
 void QueriesAtTheObject()
 {
     std::vector<Wall> walls;
@@ -355,10 +357,10 @@ void QueriesAtTheObject()
     CHECK(hidden > 0);
 }
 
-// While something is in flight, what would change or copy the object's buffer is refused in C, and waits in C++.
+// While work is in flight, calls that would change or copy the object's buffer are refused in C and wait in C++.
 void DirectUseOfABusyObject()
 {
-    Setup s(0); // without threads nothing is drawn until somebody works
+    Setup s(0); // without worker threads nothing is drawn until a call does the work
     MOC *one = Make(), *other = Make();
     const Wall near(3, 0.5f);
     const auto submit = [&] { s.Draw(); };
@@ -383,7 +385,7 @@ void DirectUseOfABusyObject()
     CHECK_EQ(MOC_Flush(other), MOC_STATUS_OK);
     CHECK_EQ(MOC_Flush(nullptr), MOC_STATUS_NULL_POINTER);
 
-    // The pixels of one thread, whichever way the calls go.
+    // The same pixels as from one thread, whether calls go through the pool or directly to the object.
     const auto direct = [&](MOC *moc) { moc->RenderTriangles(near.vertices, QUAD, 2, nullptr, MOC::BACKFACE_NONE); };
     submit();
     direct(s.moc);
@@ -412,7 +414,7 @@ void DirectUseOfABusyObject()
     second.ClearBuffer();
     second.Flush();
     CHECK(Hidden(s.moc));
-    s.pool->SetBuffer(s.moc); // its own, once more
+    s.pool->SetBuffer(s.moc); // the same object again
     s.pool->SetBuffer(nullptr);
     second.SetBuffer(s.moc);
     second.ClearBuffer();

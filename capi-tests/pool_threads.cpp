@@ -1,5 +1,5 @@
-// Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, jobs of the engine do the
-// pool's work, and threads have names and say when they start.
+// Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, the engine's jobs do
+// the pool's work, and worker threads have names and run a callback when they start.
 #include "check.h"
 #include "deadline.h"
 
@@ -21,7 +21,7 @@ typedef MaskedOcclusionCulling MOC;
 typedef CullingThreadpool Pool;
 
 const float WALL[16] = {-15, -15, 0, 5, 15, -15, 0, 5, 15, 15, 0, 5, -15, 15, 0, 5};
-// With IN_FRONT, whose w is 3, nearer than the wall, with BEHIND, whose w is 50, behind it.
+// With IN_FRONT (w = 3) it is nearer than the wall, with BEHIND (w = 50) behind it.
 const float MODEL[12] = {-0.5f, -0.5f, 1, 0.5f, -0.5f, 1, 0, 0.5f, 1};
 const float IN_FRONT[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0};
 const float BEHIND[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 50, 0, 0, 0, 0};
@@ -45,7 +45,7 @@ std::vector<float> Depth(const MOC *moc)
     return depth;
 }
 
-// Two threads test at once, one what is in front, one what is behind: neither is ever tested with the other's matrix.
+// Two threads test concurrently, one in front of the wall, one behind it: neither is ever tested with the other's matrix.
 void EachThreadItsMatrix()
 {
     MOC *moc = Make();
@@ -93,14 +93,15 @@ void EachThreadItsMatrix()
     MOC::Destroy(empty);
 }
 
-// The calls that take matrix and layout, with and without the length of the vertices: the pixels of the same calls of an object.
+// The calls that take matrix and layout, with and without the length of the vertices: the same pixels as the same calls on an
+// object.
 void CallsWithTheirMatrix()
 {
     MOC *one = Make(), *many = Make();
     Pool pool(1, 4, 4);
     pool.SetBuffer(many);
     pool.WakeThreads();
-    pool.SetMatrix(BEHIND); // counts for none of them
+    pool.SetMatrix(BEHIND); // must not affect any of them
     pool.SetVertexLayout(MOC::VertexLayout(4, 8, 12));
     const MOC_VertexLayout layout = {12, 4, 8};
     const int32_t none = MOC_BACKFACE_NONE, all = MOC_CLIP_PLANE_ALL;
@@ -142,7 +143,7 @@ void CallsWithTheirMatrix()
     MOC::Destroy(many);
 }
 
-// A pool without threads of its own: three jobs of the program do its work.
+// A pool without worker threads: three jobs of the program do its work.
 void WorkOfTheProgramsOwnThreads()
 {
     enum { TRIANGLES = 3000, CALLS = 30, FRAMES = 12 };
@@ -181,7 +182,7 @@ void WorkOfTheProgramsOwnThreads()
             pool.RenderTriangles(vertices.data(), indices.data(), n, nullptr, MOC::BACKFACE_NONE);
             one->RenderTriangles(vertices.data(), indices.data(), n, nullptr, MOC::BACKFACE_NONE);
         }
-        // A flush that works and never sleeps.
+        // A flush that never sleeps.
         while (!pool.IsDone())
             if (!pool.WorkOnce())
                 std::this_thread::yield();
@@ -216,7 +217,7 @@ extern "C" void Start(void *user, uint32_t number)
 #endif
 }
 
-// How many threads there are, what they are called, and that each says when it starts.
+// How many threads there are, what they are called, and that each runs the callback when it starts.
 void Threads()
 {
     for (unsigned int threads : {0u, 1u, 3u}) {
@@ -237,7 +238,7 @@ void Threads()
         CHECK_EQ(started.numbers.load(), (1u << threads) - 1);
         CHECK(started.named);
     }
-    // Fewer where there are fewer processors.
+    // Fewer if there are fewer processors.
     Pool pool(8, 4, 4, 32, 3);
     CHECK_EQ(pool.GetNumThreads(), 2);
     unsigned int w = 7, h = 7;

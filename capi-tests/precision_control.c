@@ -1,6 +1,6 @@
-/* 32-bit programs may leave the x87 unit at single precision, as Direct3D 9 does to those that do not ask it not to. The
- * library has to draw the same bits: it computes in SSE registers, and what passes through the x87 unit is exact there.
- * Small triangles, clipped ones, and triangles so large that integers of 128 bits decide. */
+/* 32-bit programs may leave the x87 unit at single precision, as Direct3D 9 does by default. The library must draw the same
+ * bits: it computes in SSE registers, and whatever passes through the x87 unit is exact there. Small triangles, clipped ones,
+ * and triangles so large that 128-bit integers decide. */
 #define _DEFAULT_SOURCE 1
 #include "guarded_object.h"
 
@@ -56,7 +56,7 @@ int main(void)
     set_precision(_FPU_SINGLE);
     after = one / three;
     set_precision(_FPU_EXTENDED);
-    CHECK(before != after); /* this program itself computes there */
+    CHECK(before != after); /* this program's own arithmetic is affected */
     for (i = 0; i < N_IMPLEMENTATIONS; i++) {
         for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++) {
             draw(IMPLEMENTATIONS[i], rule, full);

@@ -1,5 +1,5 @@
-/* bcryptprimitives.dll with the one function that Rust's standard library takes from it, for versions of wine that lack
- * that library. Only .ci/windows builds it; Windows has its own. */
+/* bcryptprimitives.dll with the one function that Rust's standard library imports from it, for versions of wine that lack the
+ * DLL. Only .ci/windows builds it; Windows has its own. */
 #include <windows.h>
 #include <ntsecapi.h>
 
@@ -7,7 +7,7 @@ __declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE data, SIZE_T size)
 {
     while (size > 0) {
         const ULONG part = size < 0x10000000 ? (ULONG)size : 0x10000000;
-        /* The system's random numbers, by its name: advapi32's SystemFunction036. */
+        /* RtlGenRandom, exported by advapi32 as SystemFunction036. */
         if (!RtlGenRandom(data, part))
             return FALSE;
         data += part;

@@ -218,7 +218,7 @@ void Refused()
     }
 }
 
-// The name that the system has for a file: UTF-8 on Windows, whose own names are UTF-16, bytes elsewhere.
+// Helpers for files with UTF-8 names: converted to UTF-16 on Windows, used as bytes elsewhere.
 #ifdef _WIN32
 std::wstring Wide(const char *name)
 {
@@ -239,7 +239,7 @@ bool Exists(const char *name)
 bool Remove(const char *name) { return remove(name) == 0; }
 #endif
 
-// Names that no code page has all of: characters of two, three and four bytes, and a folder of them.
+// Names that no single code page covers: characters of two, three and four bytes, and a folder named with them.
 void NamesBeyondAscii()
 {
     MOC *moc = MOC::Create();
@@ -260,7 +260,8 @@ void NamesBeyondAscii()
         CHECK(!FrameRecording::Load(name, recording));
     }
 
-    // Not UTF-8: a stray byte, a character that is cut, half of a surrogate pair. They name files elsewhere, but not on Windows.
+    // Not UTF-8: a stray byte, a truncated character, half a surrogate pair. They are valid file names elsewhere, but not on
+    // Windows.
     for (const char *name : {"\xff.mocrec", "\xe6\x97", "\xed\xa0\x80.mocrec"})
     {
         MOC_Recording *recording = nullptr;
@@ -285,7 +286,7 @@ void NamesBeyondAscii()
         }
 #endif
     }
-    // The object records as before.
+    // The object still records.
     CHECK(moc->RecorderStart(FILE_NAME));
     moc->RecorderStop();
     MOC::Destroy(moc);

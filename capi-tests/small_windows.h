@@ -1,4 +1,4 @@
-/* windows.h without what programs seldom need, and without its macros for names that others use. */
+/* windows.h without its rarely used parts, and without macros that clash with other names. */
 #ifndef CAPI_TESTS_SMALL_WINDOWS_H
 #define CAPI_TESTS_SMALL_WINDOWS_H
 

@@ -1,4 +1,4 @@
-// Bindings copy the statistics by offset: they are Intel's struct to the byte, with counts where it has them.
+// Bindings copy the statistics by offset, so the struct must match Intel's byte for byte, with each count at the same offset.
 #define ENABLE_STATS 1
 #include "check.h"
 
@@ -33,7 +33,7 @@ int main()
     CHECK(moc->TestRect(-0.5f, -0.5f, 0.5f, 0.5f, 20) == MOC::OCCLUDED);
     quad_at(quad, -1, -1, 1, 1, 20);
     CHECK(moc->TestTriangles(quad, QUAD, 2) == MOC::OCCLUDED);
-    quad[8] = std::numeric_limits<float>::quiet_NaN(); // of a corner of both triangles
+    quad[8] = std::numeric_limits<float>::quiet_NaN(); // of a vertex that both triangles share
     moc->RenderTriangles(quad, QUAD, 2);
 
     const MOC::OcclusionCullingStatistics stats = moc->GetStatistics();
@@ -47,7 +47,7 @@ int main()
     CHECK(copied.merged == stats.mOccluders.mNumTilesMerged);
     CHECK(copied.tested_traversed == stats.mOccludees.mNumTilesTraversed && copied.tested_traversed > 0);
 
-    // The C function writes as much and no more.
+    // The C function writes exactly as many bytes.
     struct
     {
         Copied counts;

@@ -1,5 +1,4 @@
-// Allocation callbacks that throw: Create and SetResolution throw the same again, nothing leaks, and the object keeps the
-// buffer that it had.
+// Allocation callbacks that throw: Create and SetResolution rethrow, nothing leaks, and the object keeps its buffer.
 #include "check.h"
 #include "throwing_allocator.h"
 
@@ -13,16 +12,16 @@ namespace
 
 typedef MaskedOcclusionCulling MOC;
 
-// Where an exception of its own type comes from, with something that has to be freed.
+// An exception type of the program's own, with a member that must be freed.
 struct Denied
 {
     std::string why;
 };
 
-int balance = 0;   // blocks that are not freed
-int allowed = -1;  // how many more there are before the next is denied; below 0: any number
-bool own = false;  // what is thrown then: Denied, or std::bad_alloc
-bool quiet = false; // or null
+int balance = 0;   // blocks not yet freed
+int allowed = -1;  // allocations left before one fails; negative: unlimited
+bool own = false;  // then throw Denied instead of std::bad_alloc
+bool quiet = false; // return null instead of throwing
 
 void *Alloc(size_t alignment, size_t size)
 {
@@ -94,7 +93,7 @@ void SetResolutionThrows()
 {
     MOC *moc = MOC::Create(MOC::AVX512, Alloc, Free);
     CHECK(moc != nullptr);
-    // The user's own pair, not what is put around it.
+    // The user's own pair, not the wrappers around it.
     MOC::pfnAlignedAlloc alloc = nullptr;
     MOC::pfnAlignedFree release = nullptr;
     moc->GetAllocFreeCallback(alloc, release);
@@ -106,7 +105,7 @@ void SetResolutionThrows()
         allowed = some;
         const int thrown = Thrown([&] { moc->SetResolution(320, 200); });
         if (thrown == 0)
-            break; // so many blocks are enough
+            break; // this many allocations suffice
         CHECK_EQ(thrown, 2);
         CHECK_EQ(balance, empty);
         unsigned int w = 1, h = 1;
@@ -120,7 +119,7 @@ void SetResolutionThrows()
     const int with_buffer = balance;
     CHECK(with_buffer > empty);
 
-    // A larger one is denied, at each of its allocations: the wall is still there.
+    // A larger size fails at each of its allocations in turn: the wall is still there.
     for (int some = 0; some < with_buffer - empty; ++some) {
         allowed = some;
         CHECK_EQ(Thrown([&] { moc->SetResolution(640, 400); }), 2);
@@ -131,7 +130,7 @@ void SetResolutionThrows()
         CHECK_EQ(balance, with_buffer);
     }
 
-    // A C function cannot throw, and what it swallowed is not thrown later.
+    // A C function cannot throw, and an exception it swallowed is not rethrown later.
     allowed = 0;
     CHECK_EQ(MOC_SetResolution(moc, 640, 400), MOC_STATUS_OUT_OF_MEMORY);
     allowed = -1;
@@ -152,7 +151,7 @@ void PoolThrows()
         allowed = 0;
         CHECK_EQ(Thrown([&] { pool.SetResolution(640, 400); }), 2);
         allowed = -1;
-        // It works as before.
+        // It still works.
         float quad[16];
         quad_at(quad, -1, -1, 1, 1, 10);
         pool.ClearBuffer();
@@ -168,7 +167,7 @@ void PoolThrows()
     CHECK_EQ(balance, 0);
 }
 
-// A callback that uses the library itself, with an object of its own whose allocator throws.
+// A callback that uses the library itself, on its own object whose allocator throws.
 void *Nested(size_t alignment, size_t size)
 {
     const int before = allowed;
@@ -205,7 +204,7 @@ void WithoutExceptionsItIsNull()
     quiet = false;
     MOC::Destroy(moc);
 
-    // An object of a unit with exceptions, sized in one without: caught, and not thrown again.
+    // An object created in a unit with exceptions and resized in one without: caught, and not rethrown.
     moc = MOC::Create(MOC::AVX512, Alloc, Free);
     allowed = 0;
     CHECK_EQ(Thrown([&] { SetResolutionWithoutExceptions(moc, 64, 64); }), 0);

@@ -1,9 +1,9 @@
-// What throwing_allocator.cpp and throwing_allocator_none.cpp share.
+// Shared by throwing_allocator.cpp and throwing_allocator_none.cpp.
 #pragma once
 
 #include "MaskedOcclusionCulling.h"
 
-// Made in a unit without exceptions.
+// Created in a unit without exceptions.
 MaskedOcclusionCulling *CreateWithoutExceptions(MaskedOcclusionCulling::pfnAlignedAlloc alloc,
                                                 MaskedOcclusionCulling::pfnAlignedFree release);
 void SetResolutionWithoutExceptions(MaskedOcclusionCulling *moc, unsigned int width, unsigned int height);

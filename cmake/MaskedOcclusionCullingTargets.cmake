@@ -6,7 +6,7 @@
 #   _moc_import    its import library (Windows)
 #   _moc_soname    the name that programs will look for (not Windows)
 #   _moc_native    the libraries of the system that the archive needs
-#   _moc_definitions  what programs have to define: MOC_SYMBOL_PREFIX, where there is one
+#   _moc_definitions  what programs must define: MOC_SYMBOL_PREFIX, if there is a prefix
 #   _moc_scope     GLOBAL or nothing
 # They hold for every configuration: what cargo built does not depend on whether the program is for debugging.
 # With MSVC Rust always takes the release C runtime, so programs that link the archive need /MD in debug builds, too.

@@ -88,17 +88,17 @@ struct Box { float lo[3], hi[3]; };
 struct Rect { float xmin, ymin, xmax, ymax, wmin; };
 enum class Place { Outside, NearPlane, Rectangle };
 
-// Rounded so that the rectangle holds the box.
+// Rounded outwards, so that the rectangle contains the box.
 static float Below(double v) { return std::nextafter(float(v), -FLT_MAX); }
 static float Above(double v) { return std::nextafter(float(v), FLT_MAX); }
 
-// Where a box is. Rectangle: r is what TestRect asks for. NearPlane: it reaches through the near plane and may be in view, where
-// no rectangle holds it. Outside: all of it is nearer than the near plane, behind the eye, or beyond one side of the view.
+// Where a box is. Rectangle: r has the arguments of TestRect. NearPlane: the box crosses the near plane and may be in view, so
+// no rectangle bounds it. Outside: all of it is nearer than the near plane, behind the eye, or beyond one side of the view.
 static Place ProjectBox(const Matrix &m, const Box &box, float nearW, Rect &r) {
     int before = 0, behind = 0, left = 0, right = 0, below = 0, above = 0;
     r = {FLT_MAX, FLT_MAX, -FLT_MAX, -FLT_MAX, FLT_MAX};
     for (int corner = 0; corner < 8; ++corner) {
-        // In double precision no corner changes sides.
+        // In double precision, so that rounding moves no corner to the other side of a plane.
         const double x = corner & 1 ? box.hi[0] : box.lo[0];
         const double y = corner & 2 ? box.hi[1] : box.lo[1];
         const double z = corner & 4 ? box.hi[2] : box.lo[2];
@@ -274,7 +274,8 @@ static void AroundTheEye(Moc *moc) {
     Say("a box around the eye, TestBox", whole == "visible", whole);
 }
 
-// Boxes at the near plane and behind it, x and y within 1 of `x`, from z = `nearest` to z = `farthest`, with an empty buffer.
+// Boxes at and behind the near plane, x within 1 of `x`, y within 1 of 0, from z = `nearest` to z = `farthest`, with an empty
+// buffer.
 static void AtTheNearPlane(Moc *moc) {
     moc->ClearBuffer();
     const auto ask = [&](const char *what, float x, float nearest, float farthest, const std::string &right) {
@@ -290,7 +291,8 @@ static void AtTheNearPlane(Moc *moc) {
     ask("a box from the near plane on", 0, -kNear, -5, "visible");
     ask("a box that is not a number", NAN, -3, -5, "visible");
 
-    // Of random boxes and random points in them: what is in view is not outside, and what has a rectangle is in it.
+    // Random boxes and random points in them: a box with a point in view is not Outside, and a box's rectangle contains its
+    // points.
     unsigned state = 1;
     const auto random = [&](float lo, float hi) {
         state = state * 1664525u + 1013904223u;

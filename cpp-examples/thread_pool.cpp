@@ -70,7 +70,7 @@ int main() {
         // a test before Flush culls less, but never what can be seen.
         pool.Flush();
 
-        // Occludees, after the Flush. Any number of threads may test at once, each with matrices of its own.
+        // Occludees, after the Flush. Any number of threads may test concurrently, each with its own matrices.
         const auto occluded = [&](const Box &box) {
             return pool.TestTriangles(&kCorners[0].x, kFaces, 12, ModelToClip(box).data(), Moc::BACKFACE_CW,
                                       Moc::CLIP_PLANE_ALL, layout) == Moc::OCCLUDED;

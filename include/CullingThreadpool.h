@@ -14,34 +14,31 @@
  *         moc->TestRect(...) or pool.TestRect(...)
  *
  * Calls take effect in their order, and the buffer gets the same bits as from one thread, whatever the number of
- * threads and bins. RenderTriangles returns at once. Its arrays have to stay as they are until Flush, ClearBuffer,
- * SetNearClipPlane, SetBuffer or SetResolution returns (each waits until everything that was submitted is drawn), or
- * until maxJobs later calls have returned: a program that goes round among maxJobs + 1 arrays needs no Flush. Matrices
- * are copied.
+ * threads and bins. RenderTriangles returns at once. Its arrays must stay unchanged until Flush, ClearBuffer, SetNearClipPlane,
+ * SetBuffer or SetResolution returns (each waits until everything submitted is drawn), or until maxJobs later calls have
+ * returned: a program that rotates among maxJobs + 1 arrays needs no Flush. Matrices are copied.
  *
- * While a thread of the pool is awake, what was submitted is drawn without another call. With none awake, or none at
- * all, it waits for WakeThreads, Flush, SuspendThreads or WorkOnce. The threads sleep when there is nothing to do,
- * between SuspendThreads and WakeThreads, and before the first WakeThreads.
+ * While a worker thread is awake, submitted work is drawn without a further call. With none awake, or none at all, it waits for
+ * WakeThreads, Flush, SuspendThreads or WorkOnce. The threads sleep when there is nothing to do, between SuspendThreads and
+ * WakeThreads, and before the first WakeThreads.
  *
- * The object that the pool draws into may be queried directly by any thread, but not while SetBuffer or
- * SetResolution runs. It may be drawn into
- * directly while nobody calls the pool: its methods wait for what is in flight first. Pool and object may be destroyed
- * in either order; whichever goes first, what was submitted is drawn before, for which the arrays still have to be
- * there.
+ * Any thread may query the pool's object directly, but not while SetBuffer or SetResolution runs. It may be drawn into directly
+ * while no thread calls the pool: its methods first wait for work in flight. Pool and object may be destroyed in either order;
+ * whichever goes first, what was submitted is drawn before, so the arrays must still exist.
  *
- * Several threads may call everything at once but the destructor. SetMatrix and SetVertexLayout are for the calls of
- * the thread that makes them; a thread that never made one has what any thread set last. The overloads with a matrix
- * need neither. TestRect and TestTriangles answer from what is drawn by now: what was submitted and is not drawn yet
- * hides nothing.
+ * Several threads may call everything but the destructor concurrently. SetMatrix and SetVertexLayout apply to later calls on
+ * the same thread; a thread that has never called either uses what any thread set last. The overloads with a matrix need
+ * neither. TestRect and TestTriangles answer from what has been drawn so far: work that is submitted but not yet drawn hides
+ * nothing.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 #pragma once
 
-/* Also where a program includes its headers inside of extern "C". */
+/* For programs that include this header inside extern "C". */
 extern "C++" {
 
-// Not used here, but the header that this one replaces has them, and programs rely on it.
+// Not used here, but the header that this one replaces includes them, and programs rely on that.
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -64,10 +61,9 @@ public:
     /**
      * numThreads: threads besides those that call; 0 is allowed, and where there are fewer processors besides the
      * caller's, there are fewer threads, but one at least. binsW times binsH: the pieces into which the screen is cut;
-     * there are no more than four per thread, and none is smaller than 128x64 pixels. maxJobs: calls whose arrays may
-     * still be read when RenderTriangles returns; where there would be more, the caller works until there are not. Small
-     * calls are gathered into batches of half as many at most, so that more jobs make them cheaper. numProcessors: 0 asks
-     * the system.
+     * there are no more than four per thread, and none is smaller than 128x64 pixels. maxJobs: how many calls' arrays may still
+     * be read when RenderTriangles returns; beyond that the caller does work until it holds again. Small calls are gathered
+     * into batches of at most half as many, so a larger maxJobs makes them cheaper. numProcessors: 0 asks the system.
      *
      * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
      * none, and Flush does the work.
@@ -81,8 +77,8 @@ public:
     }
 
     /**
-     * The same with more settings: for pools whose work is done by the threads of the program's own job system, names of
-     * threads, and a callback when one starts. Where they are refused, the pool has no threads and one bin.
+     * The same with more settings: pools whose work is done by the program's own job system, thread names, and a callback when
+     * a thread starts. If the settings are refused, the pool has no threads and one bin.
      */
     explicit CullingThreadpool(const MOC_ThreadpoolSettings &settings)
     {
@@ -99,15 +95,15 @@ public:
     /** Lets the threads work. */
     void WakeThreads() { MOC_ThreadpoolWakeThreads(mPool); }
 
-    /** Draws what was submitted, and lets the threads sleep. */
+    /** Draws what was submitted, then puts the threads to sleep. */
     void SuspendThreads() { MOC_ThreadpoolSuspendThreads(mPool); }
 
     /** Waits until everything that was submitted is drawn. */
     void Flush() { MOC_ThreadpoolFlush(mPool); }
 
     /**
-     * Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of the program's own
-     * job system. False: there is nothing to do now that nobody does yet.
+     * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system. False:
+     * nothing is pending that is not already being worked on.
      */
     bool WorkOnce()
     {
@@ -116,7 +112,7 @@ public:
         return worked != 0;
     }
 
-    /** Is everything drawn that was submitted? WorkOnce in a loop until then is a Flush that never sleeps. */
+    /** Whether everything submitted is drawn. Calling WorkOnce in a loop until then is a Flush that never sleeps. */
     bool IsDone() const
     {
         int32_t done = 1;
@@ -124,7 +120,7 @@ public:
         return done != 0;
     }
 
-    /** How many threads the pool really has. */
+    /** The number of worker threads the pool actually has. */
     unsigned int GetNumThreads() const
     {
         uint32_t threads = 0;
@@ -132,7 +128,7 @@ public:
         return threads;
     }
 
-    /** How many columns and rows of bins there really are; 0 by 0 without an object that has a resolution. */
+    /** The actual number of columns and rows of bins; 0 by 0 without an object that has a resolution. */
     void GetNumBins(unsigned int &binsW, unsigned int &binsH) const
     {
         uint32_t w = 0, h = 0;
@@ -142,8 +138,8 @@ public:
     }
 
     /**
-     * Draws into this object from now on, after what was submitted is drawn. It keeps its near plane. An object that
-     * belongs to another pool is refused.
+     * Draws into this object from now on, once what was submitted before is drawn. The object keeps its near plane. An object
+     * that belongs to another pool is refused.
      */
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
@@ -158,10 +154,10 @@ public:
     /** Flush, then SetNearClipPlane of the object. */
     void SetNearClipPlane(float nearDist) { MOC_ThreadpoolSetNearClipPlane(mPool, nearDist); }
 
-    /** The matrix of this thread's calls that follow, which is copied; null: the vertices are in clip space. */
+    /** The matrix of this thread's later calls, which is copied; null: the vertices are in clip space. */
     void SetMatrix(const float *modelToClipMatrix = nullptr) { MOC_ThreadpoolSetMatrix(mPool, modelToClipMatrix); }
 
-    /** The vertex layout of this thread's calls that follow. With a matrix the third offset names z. */
+    /** The vertex layout of this thread's later calls. With a matrix the third offset is that of z. */
     void SetVertexLayout(const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
         const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
@@ -179,7 +175,7 @@ public:
         MOC_ThreadpoolRenderTriangles(mPool, inVtx, inTris, nTris, bfWinding, clipPlaneMask);
     }
 
-    /** The same with a matrix and a layout of its own; the arguments are those of MaskedOcclusionCulling::RenderTriangles. */
+    /** The same with its own matrix and layout; the arguments are those of MaskedOcclusionCulling::RenderTriangles. */
     void RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris, const float *modelToClipMatrix,
                          BackfaceWinding bfWinding = MaskedOcclusionCulling::BACKFACE_CW,
                          ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,
@@ -207,7 +203,7 @@ public:
         return static_cast<CullingResult>(result);
     }
 
-    /** The same with a matrix and a layout of its own; the arguments are those of MaskedOcclusionCulling::TestTriangles. */
+    /** The same with its own matrix and layout; the arguments are those of MaskedOcclusionCulling::TestTriangles. */
     CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris, const float *modelToClipMatrix,
                                 BackfaceWinding bfWinding = MaskedOcclusionCulling::BACKFACE_CW,
                                 ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,

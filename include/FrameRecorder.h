@@ -13,7 +13,7 @@
  */
 #pragma once
 
-/* Also where a program includes its headers inside of extern "C". */
+/* For programs that include this header inside extern "C". */
 extern "C++" {
 
 #include <string.h>

@@ -2,8 +2,8 @@
  * CPU occlusion culling on a masked hierarchical depth buffer: the C++ class.
  *
  * Header-only over the C functions of masked_occlusion_culling.h, so that one compiled library serves every
- * compiler. C++11. Nothing here throws but what an allocation callback of the program throws: Create and SetResolution
- * throw that again, with the object as it was.
+ * compiler. C++11. Nothing here throws, except that Create and SetResolution rethrow what an allocation callback throws,
+ * leaving the object unchanged.
  *
  * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is
  * 1/w: 0 is infinitely far, larger is nearer. The same triangle is drawn by the same pixels on every
@@ -14,8 +14,8 @@
  * Wrong input. Pointers must be null or valid. Where an argument is refused (a null pointer that has to name
  * something, a negative count, a size outside of 1 to 16384, a missing buffer, an enumeration without that
  * value), a method that returns nothing does nothing, a query and a draw answer VISIBLE, and a number that is
- * asked for is 0. Nothing is printed or thrown. GetLastStatus says how the last call of the thread went, and whoever wants to
- * know what was wrong with which argument gives SetMessageCallback a function:
+ * asked for is 0. Nothing is printed or thrown. GetLastStatus returns the status of the thread's last call; to learn which
+ * argument was wrong and why, pass SetMessageCallback a function:
  *
  *     static void Say(void *, int, const char *message) { std::fprintf(stderr, "%s\n", message); }
  *     MaskedOcclusionCulling::SetMessageCallback(Say);
@@ -28,14 +28,14 @@
  *
  * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run at once on several threads while
  * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent. While a
- * CullingThreadpool draws into an object, any thread may query it, and what changes or copies its buffer waits for
- * the pool first.
+ * CullingThreadpool draws into an object, any thread may query it, and calls that change or copy its buffer wait for the pool
+ * first.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 #pragma once
 
-/* Also where a program includes its headers inside of extern "C", which templates and overloads must not be in. */
+/* For programs that include this header inside extern "C", where templates and overloads are not allowed. */
 extern "C++" {
 
 #include <stddef.h>
@@ -56,7 +56,7 @@ extern "C++" {
  * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
- *                   0 (default): GetStatistics answers zeros. GetNumDroppedTriangles counts either way.
+ *                   0 (default): GetStatistics returns zeros. GetNumDroppedTriangles counts either way.
  *
  * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
@@ -134,8 +134,8 @@ class MaskedOcclusionCulling : public MOC_DetailImplementations<void>
 {
 public:
     /**
-     * Allocates `size` bytes at a multiple of `alignment`; null when there is no memory. What it throws, Create and
-     * SetResolution throw again, where they are compiled with exceptions; without, it must not throw.
+     * Allocates `size` bytes aligned to `alignment`; null when there is no memory. If it throws, Create and SetResolution
+     * rethrow, provided they are compiled with exceptions; otherwise it must not throw.
      */
     typedef void *(*pfnAlignedAlloc)(size_t alignment, size_t size);
     /** Frees what pfnAlignedAlloc gave. Must not throw. */
@@ -255,7 +255,7 @@ public:
         return CreateWith<Switches>(RequestedSIMD, alignedAlloc, alignedFree);
     }
 
-    /** The same, as in 2016, when there was no argument for the instruction set. */
+    /** The same as in 2016, without an argument for the instruction set. */
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
     {
@@ -263,16 +263,16 @@ public:
     }
 
     /**
-     * The MOC_Status of the last call that this thread made, of any object or pool: MOC_STATUS_OK, or why it was refused.
-     * It is the thread's and not the object's, since several threads may query one object, and since there is none where
-     * Create answers null. MOC_StatusText puts it into words.
+     * The MOC_Status of this thread's last call on any object or pool: MOC_STATUS_OK, or why it was refused. It is per thread
+     * rather than per object because several threads may query one object, and because there is no object when Create returns
+     * null. MOC_StatusText puts it into words.
      */
     static int GetLastStatus() { return MOC_GetLastStatus(); }
 
     /**
-     * From now on a function is told what was refused and why, of any object or pool in the process, and of rectangles whose
-     * minimum is above their maximum, or that have a NaN; null: nobody is told, as at first. It is called on the thread that
-     * made the call, and must not throw. MOC_MessageCallback says more.
+     * Sets the function that receives what was refused and why, for any object or pool in the process, and also reports
+     * rectangles with a NaN or with a minimum above its maximum; null (the default): none. It is called on the thread that made
+     * the call, and must not throw. See MOC_MessageCallback.
      */
     static void SetMessageCallback(MOC_MessageCallback callback, void *user = nullptr)
     {
@@ -283,8 +283,8 @@ public:
     static void Destroy(MaskedOcclusionCulling *moc) { MOC_Destroy(moc); }
 
     /**
-     * Gives the object a cleared buffer, 1 to 16384 pixels each way. Where the size is refused, or there is no memory, it
-     * keeps the one that it had.
+     * Gives the object a cleared buffer, 1 to 16384 pixels wide and high. If the size is refused or there is no memory, it
+     * keeps its old buffer.
      */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {
@@ -460,8 +460,8 @@ public:
     }
 
     /**
-     * How many triangles draws dropped since the object was made, for a NaN, an infinity or a distance beyond 2^40; counted
-     * whatever ENABLE_STATS says. Not in the library that this header stands in for.
+     * The number of triangles dropped by draws since the object was created, because of a NaN, an infinity or a distance beyond
+     * 2^40; counted whatever ENABLE_STATS is. Not in the library that this header replaces.
      */
     long long GetNumDroppedTriangles() const
     {
@@ -527,7 +527,7 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
-    /* A call that changes or copies the buffer: after what a pool has in flight for it. */
+    /* A call that changes or copies the buffer, once a pool has drawn what it has in flight for it. */
     template <class Call>
     void Direct(Call call, const MaskedOcclusionCulling *const *others = nullptr, unsigned int count = 0) const
     {

@@ -1,25 +1,26 @@
 /*
- * CPU occlusion culling on a masked hierarchical depth buffer: what allocation callbacks throw, for the C++ headers and the
- * files of link/, which include this file.
+ * CPU occlusion culling on a masked hierarchical depth buffer: exceptions thrown by allocation callbacks, for the C++ headers
+ * and the files in link/, which include this file.
  *
- * Nothing may be thrown through the library, so that what a callback throws is caught on the way in, the library is told
- * that there is no memory, and it is thrown again when the C function has returned. The object is then as it was before the
- * call. A callback that the library calls for anything else, such as a C function that the program calls itself, or a
- * method that another shared library was compiled with, counts as one that gave no memory. Without exceptions none of this is here.
+ * No exception may pass through the library, so an exception from a callback is caught before it gets there, the library is
+ * told that there is no memory, and the exception is rethrown once the C function has returned. The object is then as it was
+ * before the call. When the callback is called on behalf of anything else, such as a C function that the program calls itself,
+ * or a method compiled into another shared library, an exception just counts as out of memory. Without exceptions none of this
+ * is compiled.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 #pragma once
 
 #if defined(MOC_DETAIL_EXCEPTIONS)
-/* A test asks for the other way than the compiler's. */
+/* A test overrides the compiler's setting. */
 #elif defined(__cpp_exceptions) || defined(__EXCEPTIONS) || defined(_CPPUNWIND)
 #define MOC_DETAIL_EXCEPTIONS 1
 #else
 #define MOC_DETAIL_EXCEPTIONS 0
 #endif
 
-/* A function whose code differs between units with and without exceptions: each unit has its own. */
+/* For functions whose code differs between units with and without exceptions: each unit gets its own copy. */
 #if defined(_MSC_VER)
 #define MOC_DETAIL_INLINE __forceinline
 #elif defined(__GNUC__)
@@ -28,7 +29,7 @@
 #define MOC_DETAIL_INLINE inline
 #endif
 
-/* Also where a program includes its headers inside of extern "C". */
+/* For programs that include this header inside extern "C". */
 extern "C++" {
 
 #include <stddef.h>
@@ -67,7 +68,7 @@ public:
 
     static void *Call(MOC_AlignedAlloc alloc, size_t alignment, size_t size)
     {
-        /* What the callback itself asks of the library is not part of this call. */
+        /* Library calls made by the callback itself are not part of this call. */
         MOC_DetailAllocation *const innermost = Innermost();
         Innermost() = nullptr;
         void *memory = nullptr;

@@ -2,11 +2,11 @@
  * CPU occlusion culling on a masked hierarchical depth buffer: the instruction sets, for MaskedOcclusionCulling.h, which
  * includes this file.
  *
- * Programs that were written before there were SCALAR, NEON and SIMD128 name the other four in a switch, and compile with -Wswitch
- * -Werror; programs that name all of them do, too. So SCALAR, NEON and SIMD128 have enumerators that compilers do not miss in a switch:
- * GCC from 11 on those with a reserved name from a system header, which is why this is a file of its own, and Clang those that may be
- * unused. An older GCC has no such enumerators; it warns of the case of a value without one. MSVC does not warn at all, unless
- * C4062 is switched on: then of a switch over four.
+ * A switch over the four instruction sets that existed before SCALAR, NEON and SIMD128 must compile with -Wswitch -Werror, and
+ * so must one over all of them. So SCALAR, NEON and SIMD128 have enumerators whose absence from a switch compilers do not
+ * report: GCC from 11 on exempts reserved names from a system header, which is why this is a separate file, and Clang exempts
+ * enumerators marked unused. For older versions of GCC there are no such enumerators; they warn about a case whose value has
+ * none. MSVC does not warn at all unless C4062 is enabled: then it warns about a switch over four.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -29,17 +29,17 @@
 #define MOC_DETAIL_QUIET_ENUMERATORS 0
 #endif
 
-/* Also where a program includes its headers inside of extern "C", which templates must not be in. */
+/* For programs that include this header inside extern "C", where templates are not allowed. */
 #include "moc_names.h"
 
 extern "C++" {
 
 MOC_NAMESPACE_BEGIN
 
-/* The members of the class. The template is for the definitions of the constants, which C++11 wants in one place. */
+/* The members of the class. A template, so that a header can define the constants in C++11. */
 template <class Unused> struct MOC_DetailImplementations
 {
-    /** An instruction set. All of them give the same bits. */
+    /** An instruction set. All of them give bit-identical results. */
     enum Implementation : int
     {
         SSE2   = MOC_SSE2,

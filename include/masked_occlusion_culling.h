@@ -58,8 +58,8 @@
  * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion, MOC_StatusText and MOC_GetLastStatus. Where it is not
  * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
  * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
- * passed as int32_t and checked. MOC_GetLastStatus has the status of the thread's last call for who did not keep it, and
- * MOC_SetMessageCallback takes a function that is told which argument was refused, and why.
+ * passed as int32_t and checked. MOC_GetLastStatus returns the status of the thread's last call, and MOC_SetMessageCallback
+ * sets a function that receives which argument was refused and why.
  *
  * Null. A pointer may be null where the function says so. Where it may not, null is refused with
  * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
@@ -69,37 +69,37 @@
  *
  * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
  * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
- * returns, with three exceptions: vertices and indices of what is submitted to a pool, and the objects of
- * MOC_ThreadpoolMergeBuffers, stay as they are until MOC_ThreadpoolFlush or another call that flushes (matrix and layout are
- * copied); and the callbacks of MOC_Settings are called until the object is destroyed. A pool and the object that it draws
+ * returns, with three exceptions: the vertices and indices of calls submitted to a pool, and the objects of
+ * MOC_ThreadpoolMergeBuffers, must stay unchanged until MOC_ThreadpoolFlush or another flushing call returns (matrix and layout
+ * are copied); and the callbacks of MOC_Settings are called until the object is destroyed. A pool and the object that it draws
  * into may be destroyed in either order.
  *
  * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
  * const object may run at once on several threads while no function that takes it without const does. One of them
  * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once. While a pool
- * draws into an object, any thread may query that object; what would change or copy its buffer is refused
+ * draws into an object, any thread may query that object; calls that would change or copy its buffer are refused
  * (MOC_STATUS_BUSY) until MOC_Flush.
  *
  * Traps
- *   floating point   A call computes to nearest, with denormal numbers and without traps, whatever the thread is set to, and
- *                    leaves the thread as it was: the same bits with any rounding mode, and no SIGFPE. It may leave exception
- *                    flags behind (fetestexcept) where the thread has the default settings. On processors other than x86 with
- *                    SSE and aarch64 nothing is set: there results hold for rounding to nearest.
+ *   floating point   A call rounds to nearest, keeps denormals and does not trap, whatever the thread has set, and restores
+ *                    the thread's settings: the same bits in any rounding mode, and no SIGFPE. It may leave exception flags
+ *                    set (fetestexcept) if the thread has the default settings. On processors other than x86 with SSE and
+ *                    aarch64 nothing is set: there the results hold only for threads that round to nearest.
  *   stack            A draw or a test of triangles needs up to 59 KB of stack (64 KB in a build without optimisation),
- *                    MOC_BinTriangles 42, MOC_RenderTrilist 33, MOC_TestRect and the others less than 5. Fibers of 64 KB are too
- *                    small for the first two once their own frames are counted: give them 96 or more.
- *   transforming     MOC_TransformVertices in place is not supported: 16 bytes go out for each vertex, and where fewer come in it
- *                    would overwrite vertices that it has not read yet.
- *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it until it ends, the main thread
- *                    for good. That is safe; but the same path loaded again is the old library, not a new build of it.
- *   allocation       The callbacks of MOC_Settings must not throw; MOC_CallAlloc is for those that do.
+ *                    MOC_BinTriangles 42, MOC_RenderTrilist 33, MOC_TestRect and the others less than 5. A 64 KB fiber is too
+ *                    small for draws and triangle tests once its own frames are counted: give it 96 KB or more.
+ *   transforming     MOC_TransformVertices does not work in place: it writes 16 bytes per vertex, and with a smaller input
+ *                    stride it would overwrite vertices that it has not read yet.
+ *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it mapped until the thread ends,
+ *                    the main thread forever. That is safe, but loading the same path again gives the old library, not a new build.
+ *   allocation       The callbacks of MOC_Settings must not throw; MOC_CallAlloc is for allocators that do.
  *
  * Where to go from here
  *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
  *   docs/migrating.md       for programs that use Intel's MaskedOcclusionCulling
  *   docs/recordings.md      recorded frames
  *   cpp-examples/           programs in C and C++
- *   moc_names.h             a prefix for the names of the functions, where they collide with others
+ *   moc_names.h             a prefix for the function names, for when they collide with others
  *   MaskedOcclusionCulling.h, CullingThreadpool.h, FrameRecorder.h     the same for C++
  *
  * Generated by cbindgen from src/capi: do not edit. SPDX-License-Identifier: Apache-2.0 OR MIT
@@ -206,8 +206,8 @@ enum MOC_Status
      */
     MOC_STATUS_INVALID_RECORDING = 13,
     /**
-     * A pool has something in flight that is drawn into the object: call MOC_Flush first. Or the object belongs to another pool,
-     * or it records already.
+     * A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
+     * recording.
      */
     MOC_STATUS_BUSY = 14,
 };
@@ -252,7 +252,7 @@ enum MOC_Implementation
      */
     MOC_NEON = 16,
     /**
-     * WebAssembly's 128-bit vectors, in a module that is compiled for them.
+     * WebAssembly's 128-bit SIMD, in modules compiled with it.
      */
     MOC_SIMD128 = 17,
 };
@@ -477,13 +477,13 @@ typedef struct MOC_Recording MOC_Recording;
 typedef struct MOC_Threadpool MOC_Threadpool;
 
 /**
- * Is told of a call that was refused, or that did something else than was perhaps meant: `message` names the function, the
- * argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
+ * Receives a message about a call that was refused, or that probably did not do what was intended: `message` names the
+ * function, the argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
  *
- * `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK where
- * it was not refused. `message` is English and read during the call only. Called on the thread that made the call, from
- * several at once if they are refused at once, and while the library holds no lock of its own. It may call the library; what is
- * refused of that is not told. It must not throw or jump out.
+ * `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK if it
+ * was not refused. `message` is in English and valid only during the callback. It is called on the thread that made the call,
+ * possibly on several threads concurrently, and while the library holds no lock of its own. It may call the library; refusals
+ * of those calls are not reported. It must not throw or longjmp.
  */
 typedef void (*MOC_MessageCallback)(void *user, int32_t status, const char *message);
 
@@ -500,8 +500,8 @@ typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
 typedef void (*MOC_AlignedFree)(void *ptr);
 
 /**
- * Calls `alloc(alignment, size)` and returns what it gave, for languages whose allocators throw: nothing may be thrown into the
- * library, so that it catches, and returns null. It is called wherever `alloc` would be.
+ * Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may enter the
+ * library, so this function catches it and returns null. It is called wherever `alloc` would be.
  */
 typedef void *(*MOC_CallAlloc)(MOC_AlignedAlloc alloc, size_t alignment, size_t size);
 
@@ -527,7 +527,7 @@ typedef struct MOC_Settings {
      */
     int32_t precise_coverage;
     /**
-     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: only
+     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
      * MOC_GetDroppedTriangles counts. Default 0.
      */
     int32_t statistics;
@@ -541,8 +541,8 @@ typedef struct MOC_Settings {
      */
     MOC_AlignedFree free;
     /**
-     * Calls `alloc` in place of the library, where that has to be prepared for what it does. Null: the library calls it.
-     * Without `alloc` of no effect. Default null.
+     * Calls `alloc` on the library's behalf, when the call must be guarded. Null: the library calls it directly. Ignored if
+     * `alloc` is null. Default null.
      */
     MOC_CallAlloc call_alloc;
 } MOC_Settings;
@@ -662,8 +662,8 @@ typedef struct MOC_OccludeeStatistics {
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object, if its settings ask for statistics; else zeros. The same on every instruction set. The 72 bytes
- * are those of Intel's struct, and stay so; other counts have functions of their own, as MOC_GetDroppedTriangles.
+ * All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. The 72
+ * bytes are those of Intel's struct, and will stay so; other counts have their own functions, such as MOC_GetDroppedTriangles.
  */
 typedef struct MOC_Statistics {
     /**
@@ -677,13 +677,13 @@ typedef struct MOC_Statistics {
 } MOC_Statistics;
 
 /**
- * Called by a thread of a pool when it starts, with the `user` of the settings and the thread's number from 0 on: for its priority,
- * its affinity, or a profiler. It must not throw.
+ * Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number, counted from
+ * 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
  */
 typedef void (*MOC_ThreadStart)(void *user, uint32_t number);
 
 /**
- * How MOC_ThreadpoolCreateFrom makes a pool. Fill it with zeros, then set `size` and what should differ from the defaults.
+ * Settings of MOC_ThreadpoolCreateFrom. Zero the struct, then set `size` and whatever should differ from the defaults.
  */
 typedef struct MOC_ThreadpoolSettings {
     /**
@@ -691,13 +691,13 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t size;
     /**
-     * Threads of the pool's own, 0 to 1024. There are fewer where there are fewer processors besides the caller's, but one at least.
-     * 0: the work is done by whoever flushes, submits or calls MOC_ThreadpoolWorkOnce.
+     * Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the caller's, but at
+     * least one. 0: the work is done by the calls that flush or submit, and by MOC_ThreadpoolWorkOnce.
      */
     uint32_t threads;
     /**
-     * The columns and rows into which the screen is cut; 0: 4. There are no more than four bins per thread, none smaller than 128x64
-     * pixels, and rows of the screen first.
+     * Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than 128x64 pixels,
+     * and the screen is divided into rows first.
      */
     uint32_t bins_w;
     /**
@@ -705,16 +705,16 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t bins_h;
     /**
-     * Calls whose arrays may still be read when a call that draws returns; 0: 32. Small calls are gathered into batches of half as many
-     * at most, so that a larger number makes them cheaper.
+     * How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into batches of at
+     * most half as many, so a larger number makes them cheaper.
      */
     uint32_t max_jobs;
     /**
-     * Processors that the pool and its caller have; 0: as many as the system says.
+     * Processors available to the pool and its caller; 0: as many as the system reports.
      */
     uint32_t processors;
     /**
-     * Threads of the program's own that will call MOC_ThreadpoolWorkOnce. It only says how many bins are worth having.
+     * Number of the program's own threads that will call MOC_ThreadpoolWorkOnce. It only affects the number of bins.
      */
     uint32_t external_threads;
     /**
@@ -722,15 +722,15 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t reserved;
     /**
-     * What the names of the threads begin with, in UTF-8; their numbers follow. Null: "culling". It is copied.
+     * Prefix of the thread names, in UTF-8; the thread's number is appended. Null: "culling". It is copied.
      */
     const char *thread_name;
     /**
-     * Called by each thread when it starts; null: nothing is.
+     * Called by each worker thread when it starts; null: no callback.
      */
     MOC_ThreadStart thread_start;
     /**
-     * For `thread_start`.
+     * Passed to `thread_start`.
      */
     void *user;
 } MOC_ThreadpoolSettings;
@@ -822,23 +822,23 @@ uint32_t MOC_GetAbiVersion(void);
 const char *MOC_StatusText(int32_t status);
 
 /**
- * From now on calls that are refused, on any thread and with any object or pool, are told to `callback`, with `user` as its first
- * argument; null: nobody is told, as at first. One callback serves the whole process.
+ * From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with `user` as
+ * its first argument; null (the default): none. There is one callback for the whole process.
  *
- * When it returns, another thread may still be in the callback that was there before.
+ * When it returns, another thread may still be running the previous callback.
  *
  * Errors: none.
  *
  * Required:
- * `callback` is null or does what MOC_MessageCallback says, with `user`, on any thread, until it is replaced and every call that
- * began before that has returned.
+ * `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is replaced and
+ * every call that began before that has returned.
  */
 MOC_Status MOC_SetMessageCallback(MOC_MessageCallback callback,
                                   void *user);
 
 /**
- * The MOC_Status of the last call that the calling thread made, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText
- * and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first.
+ * The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText and
+ * MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
  */
 int32_t MOC_GetLastStatus(void);
 
@@ -868,8 +868,8 @@ MOC_Status MOC_Create(const struct MOC_Settings *settings,
                       MaskedOcclusionCulling **out);
 
 /**
- * Frees the object and its buffer, and ends its recording. A pool that draws into it draws what was submitted first, and has no object
- * afterwards. Null is allowed.
+ * Frees the object and its buffer, and ends its recording. A pool that draws into it first draws what was submitted, and has
+ * no object afterwards. Null is allowed.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -968,8 +968,8 @@ MOC_Status MOC_GetImplementation(const MaskedOcclusionCulling *moc, int32_t *out
 MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
 
 /**
- * Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted: afterwards the object may
- * be used directly while nobody calls the pool.
+ * Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may be used
+ * directly as long as no thread calls the pool.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1050,8 +1050,8 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
  * Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
- * or, with pointers of 32 bits, more indices than memory holds, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
- * that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER.
+ * or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
+ * are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -1101,7 +1101,7 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
  *
  * Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
  * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
- * its `capacity` or what memory holds; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
+ * its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -1171,8 +1171,8 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
  * - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
  * - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
  *   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
- *   a minimum is above its maximum, and on errors. NaN and such a minimum are told to the callback of
- *   MOC_SetMessageCallback, though the status is MOC_STATUS_OK.
+ *   a minimum is above its maximum, and on errors. NaN and such a minimum are reported to the callback of
+ *   MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
  *
  * Several threads may test at once.
  *
@@ -1230,8 +1230,8 @@ MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
                              struct MOC_Statistics *out);
 
 /**
- * Writes how many triangles draws dropped since the object was made, for a NaN, an infinite coordinate, or a distance beyond
- * 2^40. They are counted whether or not the settings ask for statistics.
+ * Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite coordinate, or a
+ * distance beyond 2^40. They are counted whether or not the settings ask for statistics.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1252,8 +1252,8 @@ MOC_Status MOC_GetDroppedTriangles(const MaskedOcclusionCulling *moc,
  *
  * Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
  * a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
- * alignment; MOC_STATUS_INVALID_SIZE also for a capacity above what memory holds: nothing is binned.
- * MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
+ * alignment; MOC_STATUS_INVALID_SIZE also for a capacity larger than memory can hold: nothing is binned. MOC_STATUS_LIST_FULL:
+ * a list ran out of room; what fitted is in the lists.
  *
  * Required:
  * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -1305,7 +1305,7 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
  * bytes a vertex), its last offset names z. All pointers may lie at any address.
  *
  * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
- * MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory holds.
+ * MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory can hold.
  *
  * Required:
  * `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for
@@ -1326,14 +1326,14 @@ MOC_Status MOC_TransformVertices(const float *matrix,
  * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
  * each mesh; MOC_ThreadpoolFlush; tests.
  *
- * Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four per
- * thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
- * came: the buffer gets the same bits as from one thread. While a thread of the pool is awake, what was submitted is drawn
- * without another call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush,
- * MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+ * Draw calls return at once. The threads draw in `bins_w` times `bins_h` bins of the screen (at most four per thread, none
+ * smaller than 128x64 pixels, and the screen is divided into rows first), in each bin in the order of the calls: the buffer
+ * gets the same bits as from one thread. While a worker thread is awake, submitted work is drawn without a further call. With
+ * none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or
+ * MOC_ThreadpoolWorkOnce.
  *
- * At most `max_jobs` calls still read their arrays when a call that draws returns; where there would be more, the caller works until
- * there are not. So a program that goes round among `max_jobs` + 1 arrays needs no flush before it writes to one again.
+ * At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller does work until this holds
+ * again. So a program that rotates among `max_jobs` + 1 arrays needs no flush before it overwrites one.
  *
  * Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
  *
@@ -1351,11 +1351,11 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
                                 struct MOC_Threadpool **out);
 
 /**
- * MOC_ThreadpoolCreate with more settings: for pools whose work is done by the threads of the program's own job system, for names of
- * threads, and for a callback when a thread starts.
+ * MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names, and a
+ * callback when a thread starts.
  *
- * Errors: as there, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is too small,
- * MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+ * Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is
+ * too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
  *
  * Required:
  * `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
@@ -1385,8 +1385,8 @@ MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
 
 /**
- * Draws what was submitted, and lets the threads sleep. Calls are taken in meanwhile; they wait until the threads are woken, or
- * somebody flushes or calls MOC_ThreadpoolWorkOnce.
+ * Draws what was submitted, then puts the threads to sleep. Calls are still accepted; they wait until the threads are woken,
+ * or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1397,7 +1397,7 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 
 /**
  * Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
- * and, while nobody calls the pool, the object may be drawn into directly.
+ * and, as long as no thread calls the pool, the object may be drawn into directly.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1407,9 +1407,9 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
 
 /**
- * Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of a program's own job system, beside
- * the pool's threads or in their place. Writes 1 to `worked` (null is allowed), or 0 where there is nothing to do now that nobody does
- * yet. A piece is one batch of calls to project, or what one bin has to draw: tens of microseconds as a rule.
+ * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system, alongside the
+ * pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is pending that is not already
+ * being worked on. A piece is one batch of calls to project, or the batches one bin has to draw: usually tens of microseconds.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1420,8 +1420,8 @@ MOC_Status MOC_ThreadpoolWorkOnce(const struct MOC_Threadpool *pool,
                                   int32_t *worked);
 
 /**
- * Writes 1 where everything that was submitted is drawn, else 0. MOC_ThreadpoolWorkOnce in a loop until then is a flush that never
- * sleeps.
+ * Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a flush that
+ * never sleeps.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1432,7 +1432,7 @@ MOC_Status MOC_ThreadpoolIsDone(const struct MOC_Threadpool *pool,
                                 int32_t *done);
 
 /**
- * Writes how many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+ * Writes the number of the pool's worker threads: fewer than requested if there are fewer processors.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1443,9 +1443,9 @@ MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool,
                                     uint32_t *threads);
 
 /**
- * Writes into how many columns and rows of bins the screen is cut, which changes with the resolution.
+ * Writes the number of columns and rows of bins, which depends on the resolution.
  *
- * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, in which case 0 by 0 is written.
  *
  * Required:
  * As MOC_ThreadpoolWakeThreads. `bins_w` and `bins_h` are null or can be written.
@@ -1453,17 +1453,17 @@ MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolGetBins(const struct MOC_Threadpool *pool, uint32_t *bins_w, uint32_t *bins_h);
 
 /**
- * Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. The object keeps its near plane.
+ * Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
  *
- * The object may be destroyed before the pool or after it. It may be queried by MOC_TestRect and MOC_TestTriangles at any time, by any
- * thread, also while the pool draws: they answer from what is drawn by then. What would change or copy its buffer while something is in
- * flight is refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+ * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it at any time, on any
+ * thread, even while the pool draws: they answer from what has been drawn so far. Calls that would change or copy its buffer
+ * while work is in flight are refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
  *
- * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY where `moc` belongs to another pool, and nothing is changed.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
  *
  * Required:
- * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; nobody uses it or the
- * object that the pool had meanwhile.
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; no other
+ * thread uses it or the pool's previous object meanwhile.
  */
 MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
                                    MaskedOcclusionCulling *moc);
@@ -1479,7 +1479,7 @@ MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32_t width, uint32_t height);
 
 /**
- * MOC_ThreadpoolFlush, then MOC_SetNearClipPlane of the pool's object.
+ * MOC_ThreadpoolFlush, then MOC_SetNearClipPlane on the pool's object.
  *
  * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
  *
@@ -1489,9 +1489,9 @@ MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32
 MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, float near);
 
 /**
- * Sets the matrix of the calling thread's calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
- * vertices are in clip space. A thread that never set a matrix or a layout on this pool has those that any thread set last, so that
- * one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
+ * Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+ * vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
+ * so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool.
  *
@@ -1502,8 +1502,8 @@ MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool,
                                    const float *model_to_clip);
 
 /**
- * Sets the vertex layout of the calling thread's calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix:
- * with one the last offset names z. As MOC_ThreadpoolSetMatrix for threads that set none.
+ * Sets the vertex layout of the calling thread's later calls; null: (16, 4, 12), packed x, y, z, w, which does not suit a
+ * matrix: with one the last offset is that of z. Threads that set none are treated as in MOC_ThreadpoolSetMatrix.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
  *
@@ -1514,8 +1514,8 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
                                          const struct MOC_VertexLayout *layout);
 
 /**
- * MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and the arrays
- * of all calls before may be changed or freed.
+ * MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and
+ * the arrays of all earlier calls may be changed or freed.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
@@ -1540,15 +1540,16 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          int32_t clip_planes);
 
 /**
- * Submits occluders and returns at once, or works until no more than `max_jobs` calls read their arrays. The arguments are those of
- * MOC_RenderTriangles; the matrix and the layout are copied. The near plane is the object's.
+ * Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
+ * no longer holds. The arguments are those of MOC_RenderTriangles; matrix and layout are copied. The near plane is the
+ * object's.
  *
- * Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+ * Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
- * are until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
- * `model_to_clip` and `layout` are null or can be read.
+ * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
+ * unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs`
+ * later calls do. `model_to_clip` and `layout` are null or can be read.
  */
 MOC_Status MOC_ThreadpoolRenderMesh(const struct MOC_Threadpool *pool,
                                     const float *vertices,
@@ -1560,13 +1561,13 @@ MOC_Status MOC_ThreadpoolRenderMesh(const struct MOC_Threadpool *pool,
                                     const struct MOC_VertexLayout *layout);
 
 /**
- * As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices` on: an index that names a vertex
- * that does not lie whole within it is an error, and nothing is drawn.
+ * As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices`: an index of a vertex
+ * that is not wholly within it is an error, and nothing is drawn.
  *
  * Errors: as MOC_RenderTrianglesChecked.
  *
  * Required:
- * As MOC_ThreadpoolRenderMesh, where `vertices` can be read for `vertex_floats` floats whatever the indices are.
+ * As MOC_ThreadpoolRenderMesh, but `vertices` can be read for `vertex_floats` floats whatever the indices are.
  */
 MOC_Status MOC_ThreadpoolRenderMeshChecked(const struct MOC_Threadpool *pool,
                                            const float *vertices,
@@ -1579,7 +1580,7 @@ MOC_Status MOC_ThreadpoolRenderMeshChecked(const struct MOC_Threadpool *pool,
                                            const struct MOC_VertexLayout *layout);
 
 /**
- * MOC_TestTriangles against what is drawn by now.
+ * MOC_TestTriangles against what has been drawn so far.
  *
  * Errors: as there.
  *
@@ -1597,7 +1598,7 @@ MOC_Status MOC_ThreadpoolTestMesh(const struct MOC_Threadpool *pool,
                                   int32_t *result);
 
 /**
- * MOC_TestTrianglesChecked against what is drawn by now.
+ * MOC_TestTrianglesChecked against what has been drawn so far.
  *
  * Errors: as there.
  *
@@ -1616,7 +1617,7 @@ MOC_Status MOC_ThreadpoolTestMeshChecked(const struct MOC_Threadpool *pool,
                                          int32_t *result);
 
 /**
- * MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
+ * MOC_TestRect against what has been drawn so far. Work that is submitted but not yet drawn hides nothing.
  *
  * Errors: as there.
  *
@@ -1648,7 +1649,7 @@ MOC_Status MOC_ThreadpoolTestTriangles(const struct MOC_Threadpool *pool,
                                        int32_t *result);
 
 /**
- * MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
+ * MOC_ComputePixelDepthBuffer of the pool's object, after everything submitted is drawn.
  *
  * Errors: as there.
  *
@@ -1675,11 +1676,11 @@ MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
 
 /**
  * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
- * format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on as they are. Setting another near
+ * format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged. Setting another near
  * plane or resolution ends the recording, once it holds a call; merges and lists are not recorded.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE where
- * the file cannot be made, or on Windows `path` is not UTF-8.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
+ * file cannot be created, or on Windows if `path` is not UTF-8.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
@@ -1722,8 +1723,8 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
  * Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
  * The caller gives the recording back to MOC_RecordingDestroy. Several threads may read from one recording at once.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where the file cannot be read, or on Windows `path` is not UTF-8,
- * MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if the file cannot be read, or on Windows if `path` is not UTF-8,
+ * MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, truncated or corrupt.
  *
  * Required:
  * `path` is null or ends with a zero, `out` is null or can be written.

@@ -1,19 +1,18 @@
 /*
  * The names of the C functions where the library was built with a prefix: with MOC_SYMBOL_PREFIX=acme_ it exports
- * acme_MOC_Create instead of MOC_Create. docs/migrating.md ("Names that collide") says when and how.
+ * acme_MOC_Create instead of MOC_Create. docs/migrating.md ("Names that collide") explains when and how.
  *
- * The program defines MOC_SYMBOL_PREFIX as acme_, too, on the command line or before the first include. From this file
- * to moc_names_end.h, MOC_Create then stands for acme_MOC_Create. Each header includes the first at its beginning and the
- * second at its end, so every name listed here is free for the program's own functions. A source file that wants to
- * call the library as MOC_Create includes this file after the other headers. Without MOC_SYMBOL_PREFIX nothing here
- * has an effect.
+ * The program also defines MOC_SYMBOL_PREFIX as acme_, on the command line or before the first include. Between this file and
+ * moc_names_end.h, MOC_Create then means acme_MOC_Create. Each header includes this file at its beginning and moc_names_end.h
+ * at its end, so every name listed here is free for the program's own functions. A source file that wants to write MOC_Create
+ * includes this file after the other headers. Without MOC_SYMBOL_PREFIX nothing here has any effect.
  *
  * No include guard: every header includes it again. SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 
 /*
- * In C++ all declarations lie in an inline namespace named after the prefix: the linker merges inline functions of one
- * name, and would mix the methods of two copies of the library in one program. A forward declaration is written
+ * In C++ all declarations are in an inline namespace named after the prefix: the linker merges inline functions of the same
+ * name, and would otherwise mix the methods of two copies of the library in one program. A forward declaration is written
  *
  *     MOC_NAMESPACE_BEGIN class MaskedOcclusionCulling; MOC_NAMESPACE_END
  *
@@ -35,7 +34,7 @@
 
 #ifdef MOC_SYMBOL_PREFIX
 #ifndef MOC_DETAIL_JOIN
-#error "MOC_SYMBOL_PREFIX has to be defined before the first header of the library is included"
+#error "MOC_SYMBOL_PREFIX must be defined before the first header of the library is included"
 #endif
 /* The functions of src/capi, by `UPDATE_HEADER=1 cargo test --test header`. */
 #define MOC_GetAbiVersion MOC_DETAIL_JOIN(MOC_SYMBOL_PREFIX, MOC_GetAbiVersion)

@@ -11,7 +11,7 @@
 #include "../include/MaskedOcclusionCullingAllocation.h"
 #undef MaskedOcclusionCulling
 
-// To the end of the file that includes this one, MOC_Create stands for what MOC_SYMBOL_PREFIX makes of it.
+// To the end of the including file, MOC_Create stands for the name with the prefix.
 #include "../include/moc_names.h"
 
 namespace moc_link

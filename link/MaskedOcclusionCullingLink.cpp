@@ -20,9 +20,9 @@
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * USE_D3D, PRECISE_COVERAGE, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them.
  *
- * GetImplementation answers SSE2 for what that header has no name for: scalar code, NEON and simd128.
+ * GetImplementation returns SSE2 for what that header has no name for: scalar code, NEON and simd128.
  *
- * C++11; nothing here needs run-time type information, or throws but what an allocation callback throws.
+ * C++11; nothing here needs run-time type information, and the only exceptions are those of allocation callbacks, rethrown.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -253,7 +253,7 @@ public:
     }
 
 private:
-    // A call that changes or copies the buffer: after what a pool has in flight for it.
+    // A call that changes or copies the buffer, once a pool has drawn what it has in flight for it.
     template <class Call> void Direct(Call call, const MOC_LinkedObject *other = nullptr) const
     {
         do

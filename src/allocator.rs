@@ -11,7 +11,7 @@ pub type AlignedAlloc = unsafe extern "C" fn(alignment: usize, size: usize) -> *
 /// Frees what [`AlignedAlloc`] gave.
 pub type AlignedFree = unsafe extern "C" fn(ptr: *mut c_void);
 
-/// Calls an [`AlignedAlloc`], where something has to be done around it.
+/// Calls an [`AlignedAlloc`] on the library's behalf, when the call must be guarded.
 pub(crate) type CallAlloc =
     unsafe extern "C" fn(alloc: Option<AlignedAlloc>, alignment: usize, size: usize) -> *mut c_void;
 
@@ -35,10 +35,10 @@ impl Allocator {
         Self { callbacks: Some((alloc, free)), call_alloc: None }
     }
 
-    /// The same, whose `alloc` is called by `call`, if that is given.
+    /// The same, but with `alloc` called through `call`, if given.
     ///
     /// # Safety
-    /// `call` gives what `alloc` gave, or null, and may be called as `alloc` may.
+    /// `call` returns what `alloc` returned, or null, and may be called wherever `alloc` may.
     pub(crate) const unsafe fn called_through(self, call: Option<CallAlloc>) -> Self {
         Self { call_alloc: call, ..self }
     }
@@ -56,7 +56,7 @@ impl Allocator {
             (None, _) => unsafe { std::alloc::alloc(layout) },
             // SAFETY: whoever called `from_callbacks` vouched for the callback.
             (Some((alloc, _)), None) => unsafe { alloc(layout.align(), layout.size()).cast() },
-            // SAFETY: whoever called `called_through` vouched for this one.
+            // SAFETY: the caller of `called_through` vouched for it.
             (Some((alloc, _)), Some(call)) => unsafe { call(Some(alloc), layout.align(), layout.size()).cast() },
         };
         let ptr = NonNull::new(ptr).ok_or(Error::OutOfMemory)?;

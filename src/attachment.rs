@@ -1,9 +1,9 @@
-//! What an object knows of the pool that draws into it.
+//! What an object knows about the pool that draws into it.
 //!
-//! An engine may query an object while its pool draws, from any thread, and may draw into it directly while the pool has nothing
-//! in flight. So the object counts, in `turns`, how often its pool began and ended to have something in flight. A query reads
-//! the buffer without a lock and keeps its answer where no turn was taken meanwhile; otherwise it asks the pool, which locks
-//! what the query reads. A seqlock costs a query two loads, where a lock would double the time of a small rectangle.
+//! An engine may query an object from any thread while its pool draws, and may draw into it directly while the pool has nothing
+//! in flight. So the object counts in `turns` each time its pool becomes busy or idle. A query reads the buffer without a lock
+//! and keeps its answer if the count has not changed meanwhile; otherwise it asks the pool, which locks what the query reads.
+//! This seqlock costs a query two loads, where a lock would double the time of a small rectangle.
 
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -11,18 +11,18 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use crate::pipeline::Mesh;
 use crate::{CullingResult, Error};
 
-/// A pool, as its object sees it.
+/// A pool as seen by its object.
 pub(crate) trait Pool: Send + Sync {
-    /// Waits until everything that was submitted is drawn.
+    /// Waits until everything submitted is drawn.
     fn flush(&self);
 
-    /// Forgets the object with this attachment after a flush.
+    /// Flushes, then forgets the object that this is the attachment of.
     fn forget(&self, attachment: &Attachment);
 
-    /// Tests a rectangle against what is drawn by now.
+    /// Tests a rectangle against what has been drawn so far.
     fn test_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error>;
 
-    /// Tests a mesh against what is drawn by now.
+    /// Tests a mesh against what has been drawn so far.
     ///
     /// # Safety
     /// Every vertex from the lowest to the highest index can be read.
@@ -32,28 +32,28 @@ pub(crate) trait Pool: Send + Sync {
 /// The pool of an object, if it has one.
 #[derive(Default)]
 pub(crate) struct Attachment {
-    /// Odd while the pool has something in flight.
+    /// Odd while the pool has work in flight.
     turns: AtomicU32,
     pool: RwLock<Option<Arc<dyn Pool>>>,
 }
 
 impl Attachment {
-    /// Has the pool something in flight?
+    /// Does the pool have work in flight?
     #[inline(always)]
     pub fn is_busy(&self) -> bool {
         self.turns.load(Ordering::Acquire) % 2 == 1
     }
 
-    /// Refuses what would change or read the buffer beside the pool.
+    /// Refuses an operation that would change or copy the buffer alongside the pool.
     #[inline(always)]
     pub fn check_idle(&self) -> Result<(), Error> {
         if self.is_busy() { Err(Error::Busy) } else { Ok(()) }
     }
 
-    /// The answer to a query of the buffer, unless the pool had something in flight meanwhile.
+    /// The answer to a query of the buffer, unless the pool had work in flight meanwhile.
     ///
-    /// A draw that begins meanwhile writes what the query reads: a race, as of any seqlock whose data is not atomic. What is read is
-    /// compared and never used as an address, and the answer is dropped here.
+    /// A draw that begins meanwhile writes what the query reads: a race, as in any seqlock whose data is not atomic. What is read is only
+    /// compared, never used as an address, and the answer is discarded here.
     #[inline(always)]
     pub fn undisturbed<R>(&self, ask: impl FnOnce() -> R) -> Option<R> {
         let before = self.turns.load(Ordering::Acquire);
@@ -61,15 +61,15 @@ impl Attachment {
             return None;
         }
         let answer = ask();
-        // The buffer is read before the count is.
+        // The buffer is read before the count is read again.
         fence(Ordering::Acquire);
         (self.turns.load(Ordering::Relaxed) == before).then_some(answer)
     }
 
-    /// The pool has something in flight from now on, or nothing any more. Called in turn, under a lock of the pool.
+    /// The pool becomes busy, or idle again. Calls alternate between the two, under the pool's lock.
     pub fn turn(&self) {
         self.turns.fetch_add(1, Ordering::AcqRel);
-        // The count is written before the buffer is, which other threads do after they took the lock under which this is called.
+        // The count is written before the buffer, which other threads write after they took the lock under which this is called.
         fence(Ordering::Release);
     }
 
@@ -86,10 +86,10 @@ impl Attachment {
         self.read().clone()
     }
 
-    /// Belongs to this pool from now on.
+    /// Attaches the object to this pool.
     ///
     /// # Errors
-    /// [`Error::Busy`] where it belongs to another one.
+    /// [`Error::Busy`] if it belongs to another.
     pub fn attach(&self, pool: Arc<dyn Pool>) -> Result<(), Error> {
         let mut slot = self.write();
         if slot.is_some() {
@@ -99,12 +99,12 @@ impl Attachment {
         Ok(())
     }
 
-    /// Belongs to no pool any more.
+    /// Detaches the object from its pool.
     pub fn detach(&self) {
         *self.write() = None;
     }
 
-    /// The object goes away: its pool draws what was submitted and has no object any more.
+    /// The object is going away: its pool draws what was submitted and no longer has an object.
     pub fn leave(&self) {
         if let Some(pool) = self.pool() {
             pool.forget(self);

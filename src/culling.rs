@@ -23,10 +23,10 @@ pub(crate) const MAX_SIZE: u32 = 16_384;
 /// Clip space is (x, y, w) with x to the right, y up and w away from the eye; depth is 1/w, 0 infinitely
 /// far, larger is nearer. An object may be sent between threads, and shared by threads that only query.
 ///
-/// An object that a [`CullingThreadpool`](crate::CullingThreadpool) draws into is refused ([`Error::Busy`]) wherever a call would
-/// change or copy a buffer into which something is still being drawn. Queries are always answered, from what is drawn by then.
+/// While a [`CullingThreadpool`](crate::CullingThreadpool) is drawing into an object, calls that would change or copy its
+/// buffer are refused ([`Error::Busy`]). Queries are always answered, from what has been drawn so far.
 pub struct MaskedOcclusionCulling {
-    /// First, so that it is dropped first: what a pool still has in flight is drawn then.
+    /// First, so that it is dropped first: dropping it draws what a pool still has in flight.
     attachment: Attachment,
     implementation: Implementation,
     update_rule: UpdateRule,
@@ -86,7 +86,7 @@ impl MaskedOcclusionCulling {
     /// Allocates a buffer of `width` by `height` pixels, each from 1 to 16,384, and clears it.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`], [`Error::OutOfMemory`], [`Error::Busy`]: the object keeps the buffer that it had.
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`], [`Error::Busy`]: the object keeps its buffer.
     pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {
         self.attachment.check_idle()?;
         if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
@@ -269,7 +269,7 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
-    /// The same by way of the pool that draws into the object.
+    /// The same through the pool that draws into the object.
     ///
     /// # Safety
     /// As there.
@@ -344,7 +344,7 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
-    /// By way of the pool that draws into the object.
+    /// Through the pool that draws into the object.
     #[cold]
     fn pool_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
         let edges = [min.0, min.1, max.0, max.1];
@@ -427,7 +427,7 @@ impl MaskedOcclusionCulling {
     ///
     /// # Errors
     /// [`Error::NoBuffer`], [`Error::Busy`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or
-    /// ends at the buffer's edge), or reaches beyond the buffer's last tile.
+    /// ending at the buffer's edge), or that extends beyond the buffer's last tile.
     pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
         // SAFETY: `&mut self` keeps every other user of the buffer away.
         unsafe { self.render_trilist_shared(list, scissor) }
@@ -500,7 +500,7 @@ impl MaskedOcclusionCulling {
         self.write_pixels(depth, flip_y)
     }
 
-    /// The same where nobody draws.
+    /// The same, when nothing is being drawn.
     pub(crate) fn write_pixels(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
         let buffer = self.buffer()?;
         let pixels = buffer.width() as usize * buffer.height() as usize;
@@ -514,8 +514,8 @@ impl MaskedOcclusionCulling {
         self.counters.snapshot()
     }
 
-    /// Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted to it. Until
-    /// another call of the pool the object may then be used directly.
+    /// Waits until the pool that draws into the object, if any, has drawn everything submitted to it. The object may then be
+    /// used directly until the next call of the pool.
     pub fn flush(&self) {
         if let Some(pool) = self.attachment.pool() {
             pool.flush();

@@ -33,8 +33,8 @@ pub enum Error {
     File,
     /// A file is no recording, or it is cut or broken (C interface only).
     InvalidRecording,
-    /// Something is being drawn into the object by a pool: flush first. Or the object belongs to another pool, or (C interface
-    /// only) it records already.
+    /// A pool is drawing into the object: flush first. Or the object belongs to another pool, or (C interface only) it is
+    /// already recording.
     Busy,
 }
 
@@ -54,7 +54,9 @@ impl fmt::Display for Error {
             Error::Internal => "the library failed inside",
             Error::File => "a recording's file cannot be made, written or read",
             Error::InvalidRecording => "a file is no recording, or it is cut or broken",
-            Error::Busy => "a pool is drawing into the object, or it belongs to another pool, or it records already",
+            Error::Busy => {
+                "a pool is drawing into the object, or it belongs to another pool, or it is already recording"
+            }
         })
     }
 }

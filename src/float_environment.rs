@@ -1,11 +1,11 @@
-//! Calls compute as the compiler takes for granted: rounding to nearest, with denormal numbers, and without traps.
+//! Runs calls in the floating-point environment that the compiler assumes: round to nearest, denormals kept, no traps.
 //!
-//! Engines change that for a thread: another rounding mode, denormals flushed to zero, exceptions that raise a signal. The same
-//! bits everywhere and conservative answers need the default, and a division by a zero that is masked out later must not
-//! end the program. So an exported function looks at the control register, which costs a nanosecond, and only where it
-//! says something else sets it, and sets it back at the end.
+//! Engines change it per thread: another rounding mode, denormals flushed to zero, exceptions that raise a signal. Identical
+//! bits and conservative answers need the default, and a division by a zero that is masked out later must not end the program.
+//! So an exported function reads the control register, which costs a nanosecond; only if it is not the default is it set, and
+//! restored at the end.
 
-/// Is the calling thread in the default floating-point environment?
+/// Whether the calling thread is in the default floating-point environment.
 #[inline]
 pub(crate) fn is_default() -> bool {
     control::is_default(control::read())
@@ -20,7 +20,7 @@ pub(crate) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
 #[cold]
 #[inline(never)]
 fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
-    /// Sets back what was there, also while a panic passes.
+    /// Restores the previous value, also while a panic unwinds.
     struct SetBack(control::Register);
     impl Drop for SetBack {
         fn drop(&mut self) {
@@ -32,18 +32,18 @@ fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
     control::write(control::DEFAULT);
     let (mut body, mut result) = (Some(body), None);
     let mut call: &mut dyn FnMut() = &mut || result = body.take().map(|body| body());
-    // A call that the compiler cannot look into: it may move arithmetic past the two writes otherwise.
+    // Opaque to the compiler, which could otherwise move arithmetic past the two writes.
     core::hint::black_box(&mut call)();
     result.expect("the body ran")
 }
 
-/// MXCSR: six flags that say what happened, and above them what controls.
+/// MXCSR: six exception flags in the low bits, control bits above them.
 #[cfg(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse")))]
 mod control {
     use core::arch::asm;
 
     pub type Register = u32;
-    /// All exceptions masked, to nearest, denormals as they are.
+    /// All exceptions masked, round to nearest, denormals kept.
     pub const DEFAULT: Register = 0x1f80;
 
     #[inline]
@@ -61,13 +61,13 @@ mod control {
 
     #[inline]
     pub fn write(register: Register) {
-        // SAFETY: it reads the four bytes that the operand names. The value is the default, which compiled code takes for
-        // granted, or what was read before and is in place again when the caller's code goes on.
+        // SAFETY: it reads the four bytes that the operand names. The value is the default, which compiled code assumes, or the
+        // one read before, which is back in place when the caller's code continues.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const register, options(nostack, preserves_flags)) };
     }
 }
 
-/// FPCR: rounding, flushing, default NaNs and traps; all zero at first.
+/// FPCR: rounding, flushing, default NaNs and traps; all zero by default.
 #[cfg(target_arch = "aarch64")]
 mod control {
     use core::arch::asm;
@@ -90,13 +90,13 @@ mod control {
 
     #[inline]
     pub fn write(register: Register) {
-        // SAFETY: the value is the default, which compiled code takes for granted, or what was read before and is in place
-        // again when the caller's code goes on.
+        // SAFETY: the value is the default, which compiled code assumes, or the one read before, which is back in place when
+        // the caller's code continues.
         unsafe { asm!("msr fpcr, {}", in(reg) register, options(nostack, preserves_flags)) };
     }
 }
 
-/// No register that could say something else, or none that is known here.
+/// No such control register, or none that is supported here.
 #[cfg(not(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse"), target_arch = "aarch64")))]
 mod control {
     pub type Register = ();
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn the_environment_is_the_default_inside_and_as_before_outside() {
-        // Rounding up, denormals flushed, all exceptions trapped but the inexact and the denormal one.
+        // Rounding up, denormals flushed, all exceptions but inexact and denormal trapped.
         let odd = 0xd140;
         let inside = |odd| {
             control::write(odd);

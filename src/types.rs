@@ -17,7 +17,7 @@ pub enum Implementation {
     Avx512 = 3,
     /// aarch64's Advanced SIMD.
     Neon = 16,
-    /// WebAssembly's 128-bit vectors, in a module that is compiled for them.
+    /// WebAssembly's 128-bit SIMD, in modules compiled with it.
     Simd128 = 17,
 }
 
@@ -40,7 +40,7 @@ impl Implementation {
         *all.iter().rfind(|i| **i as i32 <= self as i32).unwrap_or(&Implementation::Scalar)
     }
 
-    /// Is it of the architecture that the library is compiled for? (Whether this processor has it is another question.)
+    /// Whether it belongs to the architecture that the library is compiled for (this processor may still lack it).
     fn is_of_this_architecture(self) -> bool {
         match self {
             Implementation::Scalar => true,

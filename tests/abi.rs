@@ -1,7 +1,7 @@
 //! The binary interface: sizes and offsets of structs, numbers of enumerations, and the functions, as `tests/abi.txt` has
 //! them. The library is compared with the list here, and the header by a C compiler; what a program was compiled with
 //! stays true. `UPDATE_ABI=1 cargo test --test abi` adds what is new; what is there goes or changes by hand, with a
-//! new MOC_ABI_VERSION. The list is that of pointers of 64 bits; `tests/abi-32.txt` has what differs with 32 (run by
+//! new MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the differences with 32-bit ones (run by
 //! `.ci/i686`).
 #![cfg(target_os = "linux")]
 

@@ -145,7 +145,7 @@ programs! {
     threads_static: THREADS, Library::Static;
 }
 
-/// Only programs of 32 bits compute in the x87 unit.
+/// Only 32-bit programs compute in the x87 unit.
 #[test]
 #[cfg(target_arch = "x86")]
 fn precision_control() {
@@ -255,7 +255,7 @@ fn headers_compile_without_warnings() {
     assert!(compiled > 0, "no compiler was found");
 }
 
-/// The header of Windows defines `min`, `max`, `near` and more as macros.
+/// windows.h defines `min`, `max`, `near` and more as macros.
 #[test]
 fn headers_compile_beside_that_of_windows() {
     if !native::target().is_windows() {

@@ -1,5 +1,5 @@
 //! `include/masked_occlusion_culling.h` is what cbindgen makes of `src/capi` now, and `moc_names.h` and `moc_names_end.h`
-//! list the functions that are exported there. `UPDATE_HEADER=1 cargo test --test header` writes them anew.
+//! list the functions exported there. `UPDATE_HEADER=1 cargo test --test header` regenerates them.
 
 use std::fs;
 use std::path::Path;
@@ -20,11 +20,11 @@ const SOURCES: [&str; 12] = [
     "recorder",
 ];
 
-/// What the generated lines lie between, in the lists of names.
+/// The markers around the generated lines in the lists of names.
 const BEGIN: &str = "/* The functions of src/capi, by `UPDATE_HEADER=1 cargo test --test header`. */\n";
 const END: &str = "/* To here. */\n";
 
-/// The sources of the header, in its order.
+/// The header's sources, in order.
 fn sources(root: &Path) -> impl Iterator<Item = (&'static str, String)> {
     let folder = root.join("src/capi");
     SOURCES.iter().map(move |&name| {
@@ -35,7 +35,7 @@ fn sources(root: &Path) -> impl Iterator<Item = (&'static str, String)> {
 
 fn generate(root: &Path) -> String {
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be read");
-    // cbindgen does not see a function whose exported name is a macro's.
+    // cbindgen does not see a function whose exported name comes from a macro.
     let plain = tempfile::tempdir().expect("a temporary folder");
     let mut builder = cbindgen::Builder::new().with_config(config);
     for (name, text) in sources(root) {
@@ -55,11 +55,11 @@ fn exported(line: &str) -> Option<&str> {
     line.trim_end().strip_prefix("#[unsafe(export_name = symbol!(")?.strip_suffix("))]")
 }
 
-/// A header with a line between its marks for each exported function.
+/// A header with one line between the markers for each exported function.
 fn with_names(root: &Path, path: &Path, line: impl Fn(&str) -> String) -> String {
     let text = fs::read_to_string(path).expect("the header can be read").replace("\r\n", "\n");
-    let (before, rest) = text.split_once(BEGIN).expect("a mark where the names begin");
-    let (_, after) = rest.split_once(END).expect("a mark where the names end");
+    let (before, rest) = text.split_once(BEGIN).expect("a marker where the names begin");
+    let (_, after) = rest.split_once(END).expect("a marker where the names end");
     let lines: String =
         sources(root).flat_map(|(_, text)| text.lines().filter_map(exported).map(&line).collect::<Vec<_>>()).collect();
     format!("{before}{BEGIN}{lines}{END}{after}")
@@ -130,7 +130,7 @@ fn every_export_is_in_the_header_by_its_own_name() {
             assert!(header.contains(&format!("{name}(")), "{name} is not in the header");
             exports += 1;
         }
-        assert_eq!(attribute, None, "the attribute is of no function");
+        assert_eq!(attribute, None, "the attribute belongs to no function");
     }
     assert!(exports > 20, "only {exports} exported functions found");
 }

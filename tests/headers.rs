@@ -1,5 +1,5 @@
-//! What programs that were written for Intel MOC do with its headers compiles with ours, without a warning, on every compiler that is
-//! here and by each standard from C++11 on.
+//! Whatever programs written for Intel MOC do with its headers compiles with this library's, without warnings, on every
+//! installed compiler and with each standard from C++11 on.
 #![cfg(unix)]
 
 mod native;
@@ -9,7 +9,7 @@ use std::process::Command;
 const STANDARDS: [&str; 4] = ["c++11", "c++14", "c++17", "c++20"];
 const COMPILERS: [&str; 4] = ["g++", "clang++", "clang++-14", "clang++-19"];
 
-/// The outputs of all compilers that refuse `source`; no compiler at all is a failure.
+/// The output of every compiler that rejects `source`; having no compiler at all is a failure.
 fn refusals(source: &str, flags: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("program.cpp");
@@ -78,7 +78,7 @@ fn a_switch_over_all_instruction_sets() {
     compiles(&SWITCH.replace("CASES", all));
 }
 
-/// The two above say something only where the warning is given.
+/// The two tests above mean something only if the compiler gives this warning.
 #[test]
 fn a_switch_that_misses_one_of_the_four_is_warned_of() {
     let refusals =

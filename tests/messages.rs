@@ -1,4 +1,4 @@
-//! Every function that can refuse says so under its own name.
+//! Every function that can refuse a call reports it under its own name.
 
 #![cfg(target_os = "linux")]
 
@@ -15,12 +15,12 @@ static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 unsafe extern "C" fn listen(_: *mut c_void, status: i32, message: *const c_char) {
     assert_eq!(status, MOC_Status::MOC_STATUS_NULL_POINTER as i32);
-    // SAFETY: the library's text ends with a zero.
+    // SAFETY: the library's text is NUL-terminated.
     let message = unsafe { CStr::from_ptr(message) }.to_str().expect("a text").to_string();
     TOLD.lock().unwrap().push(message);
 }
 
-/// Calls every function with null for whatever may not be null.
+/// Calls every function with null for each pointer that must not be null.
 fn call_all() {
     // SAFETY: null is refused everywhere.
     unsafe {
@@ -87,14 +87,14 @@ fn call_all() {
 
 #[test]
 fn every_function_that_refuses_names_itself() {
-    // SAFETY: the callback does what it has to.
+    // SAFETY: the callback meets the requirements.
     unsafe { MOC_SetMessageCallback(Some(listen), null_mut()) };
     call_all();
     let told = core::mem::take(&mut *TOLD.lock().unwrap());
     let named: BTreeSet<String> = told.iter().map(|m| m.split(": ").next().unwrap().to_string()).collect();
-    assert_eq!(named.len(), told.len(), "each of them once: {told:?}");
+    assert_eq!(named.len(), told.len(), "each exactly once: {told:?}");
 
-    // Those that refuse nothing.
+    // Functions that refuse nothing.
     let never = [
         "MOC_GetAbiVersion",
         "MOC_StatusText",

@@ -27,7 +27,7 @@ mod processor {
 mod sync {
     pub(super) use loom::sync::{Arc, Condvar, Mutex, MutexGuard};
 
-    /// One caller is not told from another.
+    /// Callers are not told apart.
     pub(super) fn external_thread() -> usize {
         usize::MAX
     }
@@ -82,9 +82,9 @@ mod target {
         pub drawn: Vec<Mutex<Vec<u32>>>,
         pub clears: AtomicU64,
         busy: Vec<AtomicBool>,
-        /// Odd while something is in flight.
+        /// Odd while work is in flight.
         turns: AtomicU64,
-        /// Pieces that bins drew, for who waits without a call of the crew.
+        /// Pieces drawn by bins, for tests that wait without calling the crew.
         pieces: loom::sync::Mutex<usize>,
         progress: loom::sync::Condvar,
     }
@@ -110,7 +110,7 @@ mod target {
             self.turns.load(SeqCst) % 2 == 1
         }
 
-        /// Waits until so many pieces are drawn; where no thread draws them, loom finds that all are blocked.
+        /// Waits until this many pieces are drawn; if no thread draws them, loom reports a deadlock.
         pub fn wait(&self, pieces: usize) {
             let mut drawn = self.pieces.lock().unwrap();
             while *drawn < pieces {
@@ -134,7 +134,7 @@ mod target {
         }
 
         pub fn draw(&self, bin: usize, work: &[Arc<Work>]) {
-            assert!(self.is_busy(), "the object is told before anything is drawn");
+            assert!(self.is_busy(), "the object is marked busy before anything is drawn");
             assert!(!self.busy[bin].swap(true, SeqCst), "two threads in a bin");
             loom::thread::yield_now();
             let mut drawn = match self.drawn[bin].try_lock() {
@@ -166,7 +166,7 @@ fn call(number: u32) -> Call {
     Call { number, indices: 3 * schedule::BATCH_WEIGHT, clears: 0 }
 }
 
-/// So small that nobody is woken for its sake where another thread is awake.
+/// So small that no thread is woken for it while another is awake.
 fn small(number: u32) -> Call {
     Call { number, indices: 3, clears: 0 }
 }
@@ -265,7 +265,7 @@ fn what_is_submitted_to_awake_threads_needs_no_other_call() {
     explore(1, 1, 2, program, &[1, 2]);
     explore(2, 1, 2, program, &[1, 2]);
     explore(1, 2, 2, program, &[1, 2]);
-    // Submitted before they wake, and to one that has no room.
+    // Submitted before the threads wake, and to a crew with no room.
     let program = |crew: &Crew, target: &Target| {
         crew.submit(small(1), true);
         crew.set_suspended(false);
@@ -284,7 +284,7 @@ fn a_thread_of_the_program_may_do_the_work() {
         crew.set_suspended(false);
         crew.submit(small(2), true);
         while crew.work_once() {}
-        // Others may be at what is left.
+        // Other threads may be working on what is left.
         target.wait(2 * target.bins());
         crew.flush();
         assert!(crew.is_done() && !crew.work_once());

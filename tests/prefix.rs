@@ -1,5 +1,6 @@
-//! Programs that are compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): what they call, what they define, and that
-//! all names of the library's functions are free for the program. `.ci/prefix` builds such a library, links and runs.
+//! Programs that are compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): what they call, what they define, and that all
+//! names of the library's functions are free for the program. `.ci/prefix` builds such a library, then links and runs programs
+//! with it.
 #![cfg(target_os = "linux")]
 
 mod native;
@@ -15,7 +16,7 @@ const C_HEADER: &str = "#include \"masked_occlusion_culling.h\"\n";
 const CPP_HEADERS: &str =
     "#include \"CullingThreadpool.h\"\n#include \"FrameRecorder.h\"\n#include \"MaskedOcclusionCulling.h\"\n";
 
-/// Methods of each class, as an object file has them.
+/// Methods of each class, as they appear in an object file.
 const CLASSES: &str = "void use(MaskedOcclusionCulling *moc, CullingThreadpool &pool);\n\
     void use(MaskedOcclusionCulling *moc, CullingThreadpool &pool)\n{\n\
     FrameRecording recording;\n\
@@ -32,7 +33,7 @@ fn compile(file: &Path, text: &str, flags: &[&str]) -> Result<String, String> {
     native::run(command.arg("-c").arg(file).arg("-o").arg(file.with_extension("o")))
 }
 
-/// The symbols of an object file: those that it defines and those that it calls.
+/// The symbols of an object file: those it defines and those it references.
 fn symbols(object: &Path) -> (BTreeSet<String>, BTreeSet<String>) {
     let list = |kind| {
         let mut command = Command::new("nm");
@@ -50,7 +51,7 @@ fn library_functions() -> Vec<String> {
     names
 }
 
-/// A program may have each of them in the file that includes the headers, whatever its arguments.
+/// A program may define each of them in the file that includes the headers, with any arguments.
 #[test]
 fn every_name_of_the_library_is_free() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -71,13 +72,13 @@ fn every_name_of_the_library_is_free() {
         assert!(library_functions().iter().all(|name| defined.contains(name)), "{defined:?}");
         assert!(called.contains("acme_MOC_ClearBuffer") && called.contains("acme_MOC_RecordingLoad"), "{called:?}");
     }
-    // Without a prefix they are taken.
+    // Without a prefix the names are taken.
     let file = folder.path().join("facade.c");
     let error = compile(&file, &format!("{C_HEADER}{facade}"), &[]).expect_err("it is accepted");
     assert!(error.contains("conflicting types for"), "{error}");
 }
 
-/// The linker merges inline functions of one name: files for two copies of the library must have none in common.
+/// The linker merges inline functions of the same name, so files for two copies of the library must have none in common.
 #[test]
 fn files_for_two_copies_share_no_function_of_the_library() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -125,7 +126,7 @@ fn the_link_files_follow_the_prefix() {
     }
 }
 
-/// Where a header was included before, its declarations have other names than those that come now would call.
+/// If a header was included earlier, its declarations have different names from those that later ones would call.
 #[test]
 fn a_prefix_that_comes_too_late_is_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -133,10 +134,10 @@ fn a_prefix_that_comes_too_late_is_refused() {
     let text = "#include \"masked_occlusion_culling.h\"\n#define MOC_SYMBOL_PREFIX acme_\n\
                 #include \"MaskedOcclusionCulling.h\"\n";
     let error = compile(&file, text, &[]).expect_err("it is accepted");
-    assert!(error.contains("has to be defined before the first header"), "{error}");
+    assert!(error.contains("must be defined before the first header"), "{error}");
 }
 
-/// Existing code in C, with one more include. An empty prefix is none.
+/// Existing C code with one more include. An empty prefix counts as none.
 #[test]
 fn a_file_that_wants_the_short_names_has_them() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -133,7 +133,7 @@ fn the_instruction_set_is_capped_by_the_argument() {
         }
         assert_eq!(Implementation::Sse2.capped(), Implementation::Sse2);
     }
-    // One that belongs to another architecture permits all: a program for x86-64 asks for AVX-512 everywhere.
+    // An instruction set of another architecture permits all: programs written for x86-64 ask for AVX-512 everywhere.
     use Implementation::*;
     let foreign: &[Implementation] = match std::env::consts::ARCH {
         "x86_64" => &[Neon, Simd128],

@@ -1,7 +1,7 @@
 /*
- * Two copies of the library in one program, one without a prefix and one with acme_: each is used in C and in C++, by
- * files that are compiled once for each. Linked with --wrap for the functions below, so that every call is counted by
- * the copy that it reaches. The arguments are the files that the two copies should lie in.
+ * Two copies of the library in one program, one without a prefix and one with acme_: each is used in C and in C++, by files
+ * that are compiled once per copy. Linked with --wrap for the functions below, so that calls are counted per copy. The
+ * arguments are the files in which the two copies should be found.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the files expect of the screen after they drew a wall over its left (-1) or right half. Each returns 0, or the line
- * in which something was not so. */
+/* What the files expect of the screen after drawing a wall over its left (-1) or right half. Each returns 0, or the line of the
+ * failed check. */
 int plain_in_c(float side), acme_in_c(float side);
 int plain_in_cpp(float side), acme_in_cpp(float side);
 
@@ -38,7 +38,7 @@ COUNT_BOTH(RecordingLoad, LOAD, (const char *path, void **out), (path, out))
 
 static int failures;
 
-/* Runs one file and compares which functions were called how often. */
+/* Runs one file and compares how often each function was called. */
 static void run(const char *what, int (*file)(float), float side, int plain, int acme, int in_cpp)
 {
     static const int calls[2][FUNCTIONS] = {{1, 2, 0, 0}, {1, 3, 1, 1}};
@@ -69,7 +69,7 @@ static void lies_in(void *function, const char *file)
     found = strrchr(found, '/') ? strrchr(found, '/') + 1 : found;
     if (strncmp(found, file, strlen(file)) != 0)
     {
-        fprintf(stderr, "a function lies in %s, not in %s\n", found, file);
+        fprintf(stderr, "a function is in %s, not in %s\n", found, file);
         ++failures;
     }
 }

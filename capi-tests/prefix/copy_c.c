@@ -1,9 +1,8 @@
 /*
- * One copy of the library in C: compiled as it is, and with MOC_SYMBOL_PREFIX. Returns 0, or the line in which something
- * was not so.
+ * One copy of the library in C: compiled as it is, and with MOC_SYMBOL_PREFIX. Returns 0, or the line of the failed check.
  */
 #include "masked_occlusion_culling.h"
-/* This file writes the short names; without a prefix this include has no effect. */
+/* This file uses the short names; without a prefix this include has no effect. */
 #include "moc_names.h"
 
 #ifdef MOC_SYMBOL_PREFIX

@@ -1,11 +1,11 @@
-// One copy of the library in C++: compiled as it is, and with MOC_SYMBOL_PREFIX, and without optimisation, so that
-// inline methods are functions which the linker merges by name. Returns 0, or the line in which something was not so.
+// One copy of the library in C++: compiled as it is, and with MOC_SYMBOL_PREFIX; unoptimised, so that inline methods are
+// functions, which the linker merges by name. Returns 0, or the line of the failed check.
 #include <stdio.h>
 
 #include <vector>
 
-// Forward declarations as engines write them in their own headers: plain without a prefix, with the macros of moc_names.h
-// where there is one.
+// Forward declarations as engines write them in their own headers: plain without a prefix, with the macros of moc_names.h if
+// there is one.
 #ifndef MOC_SYMBOL_PREFIX
 class MaskedOcclusionCulling;
 #else

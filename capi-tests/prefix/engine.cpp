@@ -1,5 +1,5 @@
-// The engine behind facade.c. With a prefix it has a function by the name of one of the library's in the same file as
-// the class.
+// The engine behind facade.c. With a prefix it defines a function with the name of one of the library's, in the same file that
+// uses the class.
 #include "CullingThreadpool.h"
 #include "FrameRecorder.h"
 #include "MaskedOcclusionCulling.h"

@@ -1,9 +1,9 @@
 /*
- * An engine that offers its plugins C functions of its own, some of which are named as the library's are. With a prefix
- * they are the engine's alone. Without one and with the shared library, the class's call of MOC_ClearBuffer comes back
- * here, for ever: the exit code is then 42.
+ * An engine that offers plugins its own C functions, some with the same names as the library's. With a prefix those names are
+ * the engine's alone. Without one, and with the shared library, the class's call to MOC_ClearBuffer ends up here, recursing
+ * endlessly: the exit code is then 42.
  *
- * The path of a shared library without a prefix, as the first argument, is loaded and used besides.
+ * If the first argument is the path of a shared library without a prefix, that copy is loaded and used as well.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,13 +54,13 @@ int main(int argc, char **argv)
     expect(!engine_hides(), "nothing hides after a clear");
 #ifdef MOC_SYMBOL_PREFIX
     expect(MOC_TestRect() == 1000, "a facade in the file of the class");
-    expect(MOC_Destroy() == 2000, "a facade in a file in C that includes the library's header");
+    expect(MOC_Destroy() == 2000, "a facade in a C file that includes the library's header");
     if (argc > 1)
     {
         const int line = plugin_with(argv[1]);
         if (line != 0)
             fprintf(stderr, "plugin.c: line %d\n", line);
-        expect(line == 0, "a copy without a prefix works besides");
+        expect(line == 0, "a copy without a prefix works as well");
     }
 #else
     (void)argc;

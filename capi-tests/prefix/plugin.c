@@ -1,6 +1,6 @@
 /*
- * A plugin of the engine of facade.c: it has a facade of its own and uses the library with the prefix, both in C, and
- * loads a copy without one.
+ * A plugin of the engine in facade.c, in C: it has a facade of its own, uses the library with the prefix, and loads a copy
+ * without one.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -22,7 +22,7 @@ int MOC_Destroy(void)
             return __LINE__; \
     } while (0)
 
-/* Returns 0, or the line in which something was not so. */
+/* Returns 0, or the line of the failed check. */
 int plugin_with(const char *path)
 {
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);

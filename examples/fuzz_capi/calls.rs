@@ -75,7 +75,7 @@ impl Driver<'_> {
 
     pub(crate) fn test_triangles(&mut self, which: usize) -> Check {
         let mesh = self.mesh(which)?;
-        // Else the object itself is asked, whatever the pool does meanwhile.
+        // Otherwise the object itself is queried, whatever the pool is doing.
         let by_pool = self.rng.bool();
         let family = &mut self.families[which];
         let through = family.through();

@@ -135,7 +135,7 @@ impl Family {
         let direct = (0..answers.len()).find(|&i| Some(i) != member).or(member).map_or(UNTOUCHED, |i| answers[i]);
         let same = |i: usize| Some(i) == member || answers[i] == direct;
         ensure((0..answers.len()).all(same), || format!("{name}: answers {answers:?}, pooled is {member:?}"))?;
-        // Of triangles that pass by every pixel, but whose boxes are hidden, VIEW_CULLED becomes OCCLUDED, too.
+        // For triangles that touch no pixel but whose bounding boxes are hidden, VIEW_CULLED may also become OCCLUDED.
         let hidden = |answer| [answer, direct].contains(&OCCLUDED);
         let allowed = |answer| answer == direct || early && hidden(answer);
         ensure(pooled.is_none_or(allowed), || format!("{name}: the pool answers {pooled:?}, the others {direct}"))?;

@@ -21,7 +21,7 @@ impl Driver<'_> {
             assert_eq!(size_of::<MOC_Statistics>(), size_of_val(&counts));
             // SAFETY: a live object; the struct is nine 64-bit integers.
             let status = unsafe { MOC_GetStatistics(moc, counts.as_mut_ptr().cast()) } as i32;
-            // SAFETY: a live object, and a place for the answer.
+            // SAFETY: a live object and a valid output pointer.
             let status = status.max(unsafe { MOC_GetDroppedTriangles(moc, &mut dropped) } as i32);
             let status = if counts.iter().any(|c| *c < 0) || dropped < 0 { -1 } else { status };
             if family.asked_early {

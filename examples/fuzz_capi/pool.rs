@@ -62,7 +62,7 @@ impl Driver<'_> {
         self.flushed(which)
     }
 
-    /// A call of the pool flushed it: all is drawn, and the arrays are written to again.
+    /// A call flushed the pool: everything is drawn, and the arrays may be written to again.
     pub(crate) fn flushed(&mut self, which: usize) -> Check {
         self.submitted(which, true)?;
         if let Some(pool) = &mut self.families[which].pool {
@@ -216,7 +216,7 @@ impl Family {
     }
 }
 
-/// Draws a mesh, with what is set or with what it brings, which is the same. There is no answer.
+/// Draws a mesh, with the matrix and layout set on the pool or passed with the call, which are the same. There is no result.
 pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);
     // SAFETY: a live pool; each pointer is null or valid, and the arrays stay as they are until it was flushed.

@@ -74,7 +74,7 @@ impl Driver<'_> {
         }
     }
 
-    /// Batches that wait, behind a clear.
+    /// Pending batches behind a clear.
     fn frame(&mut self, which: usize) -> Check {
         self.wake(which, false)?;
         self.clear(which).and_then(|()| self.flushed(which))?;
@@ -87,11 +87,11 @@ impl Driver<'_> {
         self.wake(which, wakes)
     }
 
-    /// One piece of what is pending, or nothing.
+    /// One piece of the pending work, or none.
     fn work_once(&mut self, which: usize) -> Check {
         let Some(pool) = &self.families[which].pool else { return Ok(()) };
         let (mut worked, mut done) = (UNTOUCHED, UNTOUCHED);
-        // SAFETY: a live pool, and places for the answers.
+        // SAFETY: a live pool and valid output pointers.
         let statuses =
             unsafe { [MOC_ThreadpoolWorkOnce(pool.handle, &mut worked), MOC_ThreadpoolIsDone(pool.handle, &mut done)] };
         let good =
@@ -99,7 +99,7 @@ impl Driver<'_> {
         ensure(good, || format!("working once: {statuses:?}, {worked}, {done}"))
     }
 
-    /// Gives the pool an object, and then a near plane or not.
+    /// Gives the pool an object, and sometimes sets a near plane after that.
     fn attach(&mut self, which: usize) -> Check {
         let member = self.rng.usize(..self.families[which].members.len());
         let near = if self.rng.bool() { Some(self.rng.f32()) } else { None };
@@ -114,7 +114,7 @@ impl Driver<'_> {
         };
         ensure(statuses.iter().all(|&status| status as i32 == OK), || format!("attaching: {statuses:?}"))?;
         if let Some(near) = near {
-            // The pool's object has it from the pool; without that it keeps its own.
+            // The pool's object got it from the pool; if none is set, it keeps its own.
             for (_, &moc) in family.members.iter().enumerate().filter(|&(i, _)| i != member) {
                 // SAFETY: a live object that nobody else uses.
                 unsafe { MOC_SetNearClipPlane(moc, near) };
@@ -125,7 +125,7 @@ impl Driver<'_> {
         self.wake_or_suspend(which)
     }
 
-    /// Takes the object away: everything that needs one is refused.
+    /// Takes the object away: every call that needs one is refused.
     fn exchange(&mut self, which: usize) -> Check {
         let (mut answer, mut depth) = (UNTOUCHED, 0.0);
         let Some(pool) = &mut self.families[which].pool else { return Ok(()) };
@@ -192,7 +192,7 @@ impl Driver<'_> {
             };
             ensure(status as i32 == OK, || format!("waking ({wakes}): status {status:?}"))?;
         }
-        // What was submitted is drawn before the threads sleep.
+        // Everything submitted is drawn before the threads sleep.
         if wakes { Ok(()) } else { self.flushed(which) }
     }
 

@@ -1,5 +1,5 @@
-// node compare.mjs SCALAR.wasm SIMD128.wasm: draws a generated town with both modules, compares every pixel and every
-// answer, says that a box behind a wall is hidden and one before it is not, and how long a frame takes.
+// node compare.mjs SCALAR.wasm SIMD128.wasm: draws a generated town with both modules, compares every pixel and every answer,
+// checks that a box behind a wall is hidden and one in front of it is not, and times a frame.
 import { readFileSync } from 'node:fs';
 import { performance } from 'node:perf_hooks';
 import { Culling, OCCLUDED, SCALAR, SIMD128, VISIBLE } from './culling.mjs';
@@ -7,7 +7,7 @@ import { Culling, OCCLUDED, SCALAR, SIMD128, VISIBLE } from './culling.mjs';
 const [WIDTH, HEIGHT] = [1280, 720];
 const FRAMES = Number(process.env.FRAMES ?? 40);
 
-// Pixels are compared as bits. Where nothing was drawn they are -1.0, else finite and not negative.
+// Pixels are compared bit by bit. They are -1.0 where nothing was drawn, otherwise finite and not negative.
 const NOTHING = 0xbf800000;
 const isDepth = bits => bits === NOTHING || bits < 0x7f800000;
 
@@ -15,7 +15,7 @@ function expect(truth, what) {
     if (!truth) throw new Error(what);
 }
 
-// Numbers that are the same everywhere.
+// A random generator with the same sequence everywhere.
 let state = 12345;
 const number = (low, high) => {
     state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
@@ -81,7 +81,7 @@ expect(scalar.culling.implementation() === SCALAR, 'a module without simd128 is 
 expect(simd128.culling.implementation() === SIMD128, 'a module with simd128 uses it');
 expect(capped.culling.implementation() === SCALAR, 'a module with simd128 can be told not to use it');
 
-// The same bits of every pixel, and the same answers.
+// Every pixel has the same bits, and the answers are the same.
 const [answers, ...others] = [scalar, simd128, capped].map(m => frame(m.culling, m.meshes, m.tested));
 for (const other of others) expect(`${answers}` === `${other}`, 'answers differ');
 const [pixels, ...more] = [scalar, simd128, capped].map(m => m.culling.depth());
@@ -92,13 +92,14 @@ const share = answer => tests.filter(a => a === answer).length;
 expect(covered > pixels.length / 4 && share(OCCLUDED) > 100 && share(VISIBLE) > 10, 'the scene shows nothing');
 expect(pixels.every(isDepth), 'a depth is no number');
 
-// NaN, infinity and garbage in vertices and indices: refused or dropped, the same bits, and the buffer holds numbers.
+// NaN, infinity and garbage in vertices and indices: refused or dropped, with the same bits, and no NaN or infinity in the
+// buffer.
 const garbage = [scalar, simd128].map(({ culling }) => {
     state = 777;
     const positions = Float32Array.from({ length: 3000 }, () => number(-20, 20));
     const words = new Uint32Array(positions.buffer);
     for (let i = 0; i < 600; i++) {
-        // All kinds of bits, NaNs of every payload among them.
+        // Arbitrary bit patterns, including NaNs with any payload.
         const at = Math.floor(number(0, 3000));
         words[at] = i % 3 ? (Math.floor(number(0, 65536)) * 65536 + Math.floor(number(0, 65536))) >>> 0
             : (0x7f800000 + Math.floor(number(0, 1 << 23)) + (i % 2) * 0x80000000) >>> 0;
@@ -132,7 +133,7 @@ simd128.culling.render(wall, matrix);
 expect(simd128.culling.testRect(-0.1, -0.1, 0.1, 0.1, 12) === OCCLUDED, 'behind the wall');
 expect(simd128.culling.testRect(-0.1, -0.1, 0.1, 0.1, 8) === VISIBLE, 'before the wall');
 
-// A pool without threads: whoever flushes or queries draws. One with threads is refused.
+// A pool without worker threads: the flushing call draws. A pool with threads is refused.
 {
     const { moc, out, object, matrix: modelToClip, layout } = simd128.culling;
     const check = status => simd128.culling.check(status);
@@ -157,7 +158,7 @@ expect(simd128.culling.testRect(-0.1, -0.1, 0.1, 0.1, 8) === VISIBLE, 'before th
     check(moc.MOC_ThreadpoolDestroy(pool));
 }
 
-// By turns, so that both meet the same weather.
+// Alternating, so that both run under the same conditions.
 for (let i = 0; i < FRAMES; i++)
     for (const m of [scalar, simd128]) {
         const begin = performance.now();

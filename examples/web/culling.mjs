@@ -1,12 +1,12 @@
-// The library in JavaScript, without any bindings: the C functions of the .wasm file and its memory.
-// What is written here is an example to start from; engines compiled to WebAssembly link the library instead.
+// The library from JavaScript, without bindings: the C functions of the .wasm file and its memory. This is an example to start
+// from; engines compiled to WebAssembly link the library instead.
 
 export const VISIBLE = 0, OCCLUDED = 1, VIEW_CULLED = 3;
 export const SCALAR = -1, SIMD128 = 17;
 const PAGE = 65536;
 
-// Memory for JavaScript's own arrays. Pages that are added to a module's memory belong to whoever added them: the
-// library's allocator uses only what it added itself. They are never given back, so allocate once and reuse.
+// Memory for JavaScript's own arrays. Pages added to a module's memory belong to the code that added them: the library's
+// allocator uses only pages that it added itself. They are never freed, so allocate once and reuse.
 class Arena {
     constructor(memory, bytes) {
         this.memory = memory;
@@ -15,7 +15,7 @@ class Arena {
         this.end = this.next + pages * PAGE;
     }
 
-    // An address at a multiple of 16.
+    // An address aligned to 16.
     allocate(bytes) {
         const at = this.next;
         this.next += Math.ceil(bytes / 16) * 16;
@@ -47,7 +47,7 @@ export class Culling {
         if (status !== 0) throw new Error(`status ${status} (MOC_STATUS_ in masked_occlusion_culling.h)`);
     }
 
-    // Memory's buffer is another one after it grew: views are made when they are needed.
+    // The memory's buffer is replaced when it grows, so views are created when they are needed.
     word(at) {
         return new Int32Array(this.memory.buffer, at, 1)[0];
     }
@@ -89,13 +89,13 @@ export class Culling {
         return this.word(this.out);
     }
 
-    // Normalised device coordinates, and the least w.
+    // Normalised device coordinates, and the smallest w.
     testRect(xmin, ymin, xmax, ymax, wmin) {
         this.check(this.moc.MOC_TestRect(this.object, xmin, ymin, xmax, ymax, wmin, this.out));
         return this.word(this.out);
     }
 
-    // 1/w of every pixel, -1 where nothing was drawn, as bits of floats: a view of memory that the next call writes over.
+    // 1/w of every pixel, -1 where nothing was drawn, as the bits of floats: a view of memory that the next call overwrites.
     depth() {
         const count = this.pixels[0] * this.pixels[1];
         this.depthAt ??= this.arena.allocate(4 * count);

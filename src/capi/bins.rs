@@ -26,8 +26,8 @@ struct BinArguments {
 ///
 /// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
 /// a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
-/// alignment; MOC_STATUS_INVALID_SIZE also for a capacity above what memory holds: nothing is binned.
-/// MOC_STATUS_LIST_FULL: some list had no room; what fitted is in the lists.
+/// alignment; MOC_STATUS_INVALID_SIZE also for a capacity larger than memory can hold: nothing is binned. MOC_STATUS_LIST_FULL:
+/// a list ran out of room; what fitted is in the lists.
 ///
 /// # Safety
 /// As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -114,14 +114,14 @@ unsafe fn bin(
     if lists.is_null() {
         return Err(Refusal::new(Error::NullPointer, "lists is null"));
     }
-    // Bounds the product of the counts before any list is looked at.
+    // Bounds the product of the counts before any list is read.
     moc.compute_bin_size(bins_w, bins_h).because(Error::InvalidSize, BINS)?;
     let count = bins_w as usize * bins_h as usize;
-    // SAFETY: the caller's contract; the two structs are laid out the same.
+    // SAFETY: the caller's contract; the two structs have the same layout.
     let lists = unsafe { slice_mut(lists.cast::<TriList<'_>>(), count) }
-        .because(Error::InvalidLayout, "lists is not at a multiple of its alignment")?;
+        .because(Error::InvalidLayout, "lists is misaligned")?;
     if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
-        return Err(Refusal::new(Error::NullPointer, "a list has a capacity and no data"));
+        return Err(Refusal::new(Error::NullPointer, "a list has a capacity but no data"));
     }
     lists.iter().try_for_each(|list| check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.capacity as usize))?;
     // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.

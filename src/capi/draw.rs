@@ -91,8 +91,9 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 /// Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
-/// or, with pointers of 32 bits, more indices than memory holds, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
-/// that are not at a multiple of 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
+/// or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
+/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into
+/// the object.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -182,7 +183,7 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments) -> Resul
 /// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
 /// MOC_STATUS_BUSY while a pool is drawing into the object,
 /// MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
-/// its `capacity` or what memory holds; MOC_STATUS_INVALID_LAYOUT where `list` is not at a multiple of its alignment.
+/// its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -198,7 +199,7 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
         // SAFETY: the caller's contract. Drawing changes the buffer through cells that any `&` may write.
         let moc = unsafe { object(moc) }?;
         if !list.is_null() && !list.is_aligned() {
-            return Err(Refusal::new(Error::InvalidLayout, "the list is not at a multiple of its alignment"));
+            return Err(Refusal::new(Error::InvalidLayout, "the list is misaligned"));
         }
         const NO_LIST: Refusal = Refusal::new(Error::NullPointer, "the list is null");
         // SAFETY: null or aligned; the caller's contract; the two structs are laid out the same.
@@ -207,7 +208,7 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
             return Err(Refusal::new(Error::InvalidSize, "the list has a count above its capacity"));
         }
         if list.len > 0 && list.data.is_null() {
-            return Err(Refusal::new(Error::NullPointer, "the list has triangles and no data"));
+            return Err(Refusal::new(Error::NullPointer, "the list has triangles but no data"));
         }
         check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.len as usize)?;
         // SAFETY: the caller's contract.
@@ -215,7 +216,7 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
         // SAFETY: the caller's contract: exclusive inside of the rectangle.
         unsafe { moc.render_trilist_shared(list, scissor) }.because(
             Error::InvalidSize,
-            "the scissor rectangle is empty, beyond the buffer, or not in multiples of 32 and 8 pixels",
+            "the scissor rectangle is empty, outside the buffer, or not in multiples of 32 and 8 pixels",
         )
     })
 }

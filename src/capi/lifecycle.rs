@@ -66,11 +66,11 @@ pub unsafe extern "C" fn MOC_Create(
         types::flag(settings.precise_coverage, "precise_coverage is neither 0 nor 1")?;
         let allocator = match (settings.alloc, settings.free) {
             (None, None) => Allocator::SYSTEM,
-            // SAFETY: the caller vouches for the callbacks, and for the one that calls one of them.
+            // SAFETY: the caller vouches for the callbacks, including `call_alloc`.
             (Some(alloc), Some(free)) => unsafe {
                 Allocator::from_callbacks(alloc, free).called_through(settings.call_alloc)
             },
-            _ => return Err(Refusal::new(Error::NullPointer, "of alloc and free one is null")),
+            _ => return Err(Refusal::new(Error::NullPointer, "alloc and free must both be set or both be null")),
         };
         let settings = Settings {
             implementation: types::implementation(settings.implementation)?,
@@ -90,8 +90,8 @@ pub unsafe extern "C" fn MOC_Create(
     })
 }
 
-/// Frees the object and its buffer, and ends its recording. A pool that draws into it draws what was submitted first, and has no object
-/// afterwards. Null is allowed.
+/// Frees the object and its buffer, and ends its recording. A pool that draws into it first draws what was submitted, and has
+/// no object afterwards. Null is allowed.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
     })
 }
 
-pub(super) const RESOLUTION: &str = "width and height have to be from 1 to 16384";
+pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 
 /// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
 /// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
@@ -250,8 +250,8 @@ unsafe fn get<T: Copy>(
     Ok(())
 }
 
-/// Waits until the pool that draws into the object, if there is one, has drawn everything that was submitted: afterwards the object may
-/// be used directly while nobody calls the pool.
+/// Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may be used
+/// directly as long as no thread calls the pool.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///

@@ -35,7 +35,7 @@ impl MeshArguments {
     /// to the highest index.
     pub unsafe fn check<'a>(self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Refusal> {
         const COUNT: Refusal =
-            Refusal::new(Error::InvalidSize, "n_triangles is negative, or more than fits into memory");
+            Refusal::new(Error::InvalidSize, "n_triangles is negative, or larger than memory can hold");
         const STRIDE: Refusal = Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative");
         let count = usize::try_from(self.n_triangles).map_err(|_| COUNT)?;
         let indices = count.checked_mul(3).ok_or(COUNT)?;
@@ -57,15 +57,13 @@ impl MeshArguments {
         // SAFETY: the caller's contract.
         let triangles = unsafe { slice(self.triangles, indices) }
             .because(Error::NullPointer, "triangles is null")
-            .because(Error::InvalidLayout, "triangles is not at a multiple of 4 bytes")
-            .because(Error::InvalidSize, "n_triangles is more than fits into memory")?;
+            .because(Error::InvalidLayout, "triangles is not aligned to 4 bytes")
+            .because(Error::InvalidSize, "n_triangles is larger than memory can hold")?;
         if let Some(floats) = self.vertex_floats {
             let vertices = vertex_count(floats.saturating_mul(size_of::<f32>()), layout)
                 .because(Error::InvalidLayout, "an offset of the vertex layout is negative")?;
-            moc.check_indices(triangles, vertices).because(
-                Error::IndexOutOfRange,
-                "triangles has an index of a vertex that is not within vertex_floats",
-            )?;
+            moc.check_indices(triangles, vertices)
+                .because(Error::IndexOutOfRange, "triangles has an index whose vertex is not within vertex_floats")?;
         }
         Ok(CheckedMesh { vertices: VertexSource { base: self.vertices.cast(), layout }, triangles, options })
     }

@@ -1,4 +1,4 @@
-//! What the last call of a thread reported, and the callback that is told what was refused and why.
+//! The status of a thread's last call, and the callback that receives what was refused and why.
 
 use core::cell::Cell;
 use core::ffi::{c_char, c_void};
@@ -9,13 +9,13 @@ use std::sync::{Mutex, PoisonError};
 use super::refusal::Refusal;
 use super::status::{MOC_Status, guard};
 
-/// Is told of a call that was refused, or that did something else than was perhaps meant: `message` names the function, the
-/// argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
+/// Receives a message about a call that was refused, or that probably did not do what was intended: `message` names the
+/// function, the argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
 ///
-/// `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK where
-/// it was not refused. `message` is English and read during the call only. Called on the thread that made the call, from
-/// several at once if they are refused at once, and while the library holds no lock of its own. It may call the library; what is
-/// refused of that is not told. It must not throw or jump out.
+/// `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK if it
+/// was not refused. `message` is in English and valid only during the callback. It is called on the thread that made the call,
+/// possibly on several threads concurrently, and while the library holds no lock of its own. It may call the library; refusals
+/// of those calls are not reported. It must not throw or longjmp.
 pub type MOC_MessageCallback = Option<unsafe extern "C" fn(user: *mut c_void, status: i32, message: *const c_char)>;
 
 #[derive(Clone, Copy)]
@@ -24,14 +24,13 @@ struct Listener {
     user: *mut c_void,
 }
 
-// SAFETY: the library never looks at what `user` points to; MOC_SetMessageCallback asks for a callback that any thread may call
-// with it.
+// SAFETY: the library never dereferences `user`; MOC_SetMessageCallback requires a callback that any thread may call with it.
 unsafe impl Send for Listener {}
 
 static LISTENER: Mutex<Option<Listener>> = Mutex::new(None);
-/// Whether there is a listener, to be asked without the lock.
+/// Whether there is a listener, readable without the lock.
 static LISTENING: AtomicBool = AtomicBool::new(false);
-/// Whether any call was refused yet: until then no thread's status is anything but OK, and none has to be set back.
+/// Whether any call has been refused yet: until then every thread's status is OK, and none has to be reset.
 static REFUSED: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
@@ -39,16 +38,16 @@ thread_local! {
     static TELLING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// From now on calls that are refused, on any thread and with any object or pool, are told to `callback`, with `user` as its first
-/// argument; null: nobody is told, as at first. One callback serves the whole process.
+/// From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with `user` as
+/// its first argument; null (the default): none. There is one callback for the whole process.
 ///
-/// When it returns, another thread may still be in the callback that was there before.
+/// When it returns, another thread may still be running the previous callback.
 ///
 /// Errors: none.
 ///
 /// # Safety
-/// `callback` is null or does what MOC_MessageCallback says, with `user`, on any thread, until it is replaced and every call that
-/// began before that has returned.
+/// `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is replaced and
+/// every call that began before that has returned.
 #[unsafe(export_name = symbol!(MOC_SetMessageCallback))]
 pub unsafe extern "C" fn MOC_SetMessageCallback(callback: MOC_MessageCallback, user: *mut c_void) -> MOC_Status {
     guard(|| {
@@ -59,15 +58,15 @@ pub unsafe extern "C" fn MOC_SetMessageCallback(callback: MOC_MessageCallback, u
     })
 }
 
-/// The MOC_Status of the last call that the calling thread made, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText
-/// and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first.
+/// The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText and
+/// MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
 #[unsafe(export_name = symbol!(MOC_GetLastStatus))]
 pub extern "C" fn MOC_GetLastStatus() -> i32 {
-    // While a thread ends, its variables may be gone.
+    // While a thread is ending, its thread-local variables may be gone.
     LAST.try_with(Cell::get).map_or(0, |status| status as i32)
 }
 
-/// A call did what it was asked to.
+/// Records that a call succeeded.
 #[inline]
 pub(super) fn done() {
     if REFUSED.load(Relaxed) {
@@ -75,7 +74,7 @@ pub(super) fn done() {
     }
 }
 
-/// A call of this name was refused. Returns its status.
+/// Records and reports that the call of this name was refused. Returns its status.
 #[cold]
 pub(super) fn refused(function: &str, refusal: Refusal) -> MOC_Status {
     let status = refusal.error.into();
@@ -85,7 +84,7 @@ pub(super) fn refused(function: &str, refusal: Refusal) -> MOC_Status {
     status
 }
 
-/// A call of this name is not refused, but `doubt` may find something that was hardly meant.
+/// Reports a call of this name that is not refused, if `doubt` finds a probable mistake.
 #[inline]
 pub(super) fn note(function: &str, doubt: impl FnOnce() -> Option<&'static str>) {
     if LISTENING.load(Relaxed)
@@ -108,15 +107,15 @@ fn tell(function: &str, status: MOC_Status, why: &str) {
     let listener = *LISTENER.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(Listener { callback, user }) = listener {
         let mut text = Text::default();
-        // A text never fails; it is cut.
+        // Writing to a `Text` never fails; it truncates.
         let _ = write!(text, "{function}: {why}");
-        // SAFETY: whoever called MOC_SetMessageCallback vouched for the two; the text ends with a zero.
+        // SAFETY: the caller of MOC_SetMessageCallback vouched for both; the text is NUL-terminated.
         unsafe { callback(user, status as i32, text.as_ptr()) };
     }
     let _ = TELLING.try_with(|telling| telling.set(false));
 }
 
-/// A text that ends with a zero, without memory of the allocator, which may be what just failed.
+/// A NUL-terminated text that does not use the allocator, which may be what just failed.
 struct Text {
     bytes: [u8; 256],
     len: usize,
@@ -144,7 +143,7 @@ impl Write for Text {
     }
 }
 
-/// The exported function in whose body a closure of type `T` stands; `core::any::type_name` has the path of both.
+/// The exported function whose body contains a closure of type `T`; `core::any::type_name` has the path of both.
 pub(super) fn function_of<T>() -> &'static str {
     let path = core::any::type_name::<T>();
     path.split("::").find(|name| name.starts_with("MOC_")).unwrap_or("masked_occlusion_culling")

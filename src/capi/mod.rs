@@ -5,7 +5,7 @@
 //! files, so their doc comments are written for C programmers.
 #![allow(non_camel_case_types, non_snake_case)]
 
-/// The name under which a function is exported: the prefix of this build, which build.rs hands on, and its own name.
+/// The name under which a function is exported: this build's prefix, passed on by build.rs, followed by its own name.
 macro_rules! symbol {
     ($name:ident) => {
         concat!(env!("MOC_SYMBOL_PREFIX"), stringify!($name))

@@ -46,7 +46,7 @@ pub(super) unsafe fn objects<'a>(
 ) -> Result<Vec<&'a MaskedOcclusionCulling>, Refusal> {
     // SAFETY: the caller's contract.
     let pointers =
-        unsafe { slice(objects, count as usize) }.because(Error::NullPointer, "the array of others is null")?;
+        unsafe { slice(objects, count as usize) }.because(Error::NullPointer, "the array of other objects is null")?;
     // SAFETY: the caller's contract.
     let object = |&moc: &_| unsafe { object(moc) };
     pointers
@@ -95,7 +95,7 @@ fn check_array<T>(data: *const T, len: usize) -> Result<(), Error> {
     check_length::<T>(len)
 }
 
-/// Refuses more elements than an array can have: pointers of 32 bits end before the counts of C.
+/// Refuses more elements than an array can have: with 32-bit pointers, C's counts exceed that.
 pub(super) fn check_length<T>(len: usize) -> Result<(), Error> {
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
@@ -121,10 +121,10 @@ pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
 
 /// Refuses a null out pointer.
 pub(super) fn check_out<T>(out: *mut T) -> Result<(), Refusal> {
-    if out.is_null() { Err(Refusal::new(Error::NullPointer, "the pointer for the answer is null")) } else { Ok(()) }
+    if out.is_null() { Err(Refusal::new(Error::NullPointer, "the output pointer is null")) } else { Ok(()) }
 }
 
-/// Writes a width and a height, or 0 by 0 with the error that stands for them.
+/// Writes a width and a height, or 0 by 0 on an error, which is returned.
 ///
 /// # Safety
 /// The pointers are null or can be written.

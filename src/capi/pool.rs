@@ -1,4 +1,4 @@
-//! The pool of threads: making it, its threads and its object. What it draws and answers is in `pool_calls.rs`.
+//! The thread pool: creating it, its threads and its object. Draws and queries are in `pool_calls.rs`.
 
 use core::ffi::{c_char, c_void};
 use core::ptr::NonNull;
@@ -13,7 +13,7 @@ use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, ThreadStart, Threa
 /// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
 pub struct MOC_Threadpool {
     pub(super) pool: CullingThreadpool,
-    /// What the next calls without a matrix of their own are drawn with.
+    /// What later calls without their own matrix are drawn with.
     pub(super) state: PoolState,
 }
 
@@ -33,45 +33,45 @@ pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_T
     unsafe { pool.as_ref() }.ok_or(Refusal::new(Error::NullPointer, "the pool is null"))
 }
 
-/// Called by a thread of a pool when it starts, with the `user` of the settings and the thread's number from 0 on: for its priority,
-/// its affinity, or a profiler. It must not throw.
+/// Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number, counted from
+/// 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
 pub type MOC_ThreadStart = Option<unsafe extern "C" fn(user: *mut c_void, number: u32)>;
 
-/// How MOC_ThreadpoolCreateFrom makes a pool. Fill it with zeros, then set `size` and what should differ from the defaults.
+/// Settings of MOC_ThreadpoolCreateFrom. Zero the struct, then set `size` and whatever should differ from the defaults.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_ThreadpoolSettings {
     /// sizeof(MOC_ThreadpoolSettings).
     pub size: u32,
-    /// Threads of the pool's own, 0 to 1024. There are fewer where there are fewer processors besides the caller's, but one at least.
-    /// 0: the work is done by whoever flushes, submits or calls MOC_ThreadpoolWorkOnce.
+    /// Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the caller's, but at
+    /// least one. 0: the work is done by the calls that flush or submit, and by MOC_ThreadpoolWorkOnce.
     pub threads: u32,
-    /// The columns and rows into which the screen is cut; 0: 4. There are no more than four bins per thread, none smaller than 128x64
-    /// pixels, and rows of the screen first.
+    /// Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than 128x64 pixels,
+    /// and the screen is divided into rows first.
     pub bins_w: u32,
     /// See `bins_w`.
     pub bins_h: u32,
-    /// Calls whose arrays may still be read when a call that draws returns; 0: 32. Small calls are gathered into batches of half as many
-    /// at most, so that a larger number makes them cheaper.
+    /// How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into batches of at
+    /// most half as many, so a larger number makes them cheaper.
     pub max_jobs: u32,
-    /// Processors that the pool and its caller have; 0: as many as the system says.
+    /// Processors available to the pool and its caller; 0: as many as the system reports.
     pub processors: u32,
-    /// Threads of the program's own that will call MOC_ThreadpoolWorkOnce. It only says how many bins are worth having.
+    /// Number of the program's own threads that will call MOC_ThreadpoolWorkOnce. It only affects the number of bins.
     pub external_threads: u32,
     /// 0.
     pub reserved: u32,
-    /// What the names of the threads begin with, in UTF-8; their numbers follow. Null: "culling". It is copied.
+    /// Prefix of the thread names, in UTF-8; the thread's number is appended. Null: "culling". It is copied.
     pub thread_name: *const c_char,
-    /// Called by each thread when it starts; null: nothing is.
+    /// Called by each worker thread when it starts; null: no callback.
     pub thread_start: MOC_ThreadStart,
-    /// For `thread_start`.
+    /// Passed to `thread_start`.
     pub user: *mut c_void,
 }
 
-/// A program's pointer, for its callback on other threads.
+/// The program's pointer, passed to its callback on other threads.
 struct User(*mut c_void);
 
-// SAFETY: it is only handed to the callback; the caller of MOC_ThreadpoolCreateFrom vouches that threads may have it.
+// SAFETY: it is only passed to the callback; the caller of MOC_ThreadpoolCreateFrom vouches that other threads may use it.
 unsafe impl Send for User {}
 // SAFETY: as above.
 unsafe impl Sync for User {}
@@ -116,14 +116,14 @@ impl MOC_ThreadpoolSettings {
 /// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
 /// each mesh; MOC_ThreadpoolFlush; tests.
 ///
-/// Calls that draw return at once. The threads draw in `bins_w` times `bins_h` pieces of the screen (no more than four per
-/// thread, none smaller than 128x64 pixels, and rows of the screen first), in each in the order in which the calls
-/// came: the buffer gets the same bits as from one thread. While a thread of the pool is awake, what was submitted is drawn
-/// without another call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush,
-/// MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+/// Draw calls return at once. The threads draw in `bins_w` times `bins_h` bins of the screen (at most four per thread, none
+/// smaller than 128x64 pixels, and the screen is divided into rows first), in each bin in the order of the calls: the buffer
+/// gets the same bits as from one thread. While a worker thread is awake, submitted work is drawn without a further call. With
+/// none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or
+/// MOC_ThreadpoolWorkOnce.
 ///
-/// At most `max_jobs` calls still read their arrays when a call that draws returns; where there would be more, the caller works until
-/// there are not. So a program that goes round among `max_jobs` + 1 arrays needs no flush before it writes to one again.
+/// At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller does work until this holds
+/// again. So a program that rotates among `max_jobs` + 1 arrays needs no flush before it overwrites one.
 ///
 /// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
 ///
@@ -146,11 +146,11 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     guard(|| unsafe { create(settings, out) })
 }
 
-/// MOC_ThreadpoolCreate with more settings: for pools whose work is done by the threads of the program's own job system, for names of
-/// threads, and for a callback when a thread starts.
+/// MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names, and a
+/// callback when a thread starts.
 ///
-/// Errors: as there, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is too small,
-/// MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+/// Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is
+/// too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
 ///
 /// # Safety
 /// `settings` is null or can be read for as many bytes as its `size` says, its `thread_name` is null or a C string, and its `thread_start` may be called with its
@@ -184,7 +184,7 @@ unsafe fn create(
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let pool = MOC_Threadpool::new(settings()?)
-        .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads above 1024")?;
+        .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads is above 1024")?;
     // SAFETY: as above.
     unsafe { write(out, pool) };
     Ok(())
@@ -222,8 +222,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
     })
 }
 
-/// Draws what was submitted, and lets the threads sleep. Calls are taken in meanwhile; they wait until the threads are woken, or
-/// somebody flushes or calls MOC_ThreadpoolWorkOnce.
+/// Draws what was submitted, then puts the threads to sleep. Calls are still accepted; they wait until the threads are woken,
+/// or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -239,7 +239,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
 }
 
 /// Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
-/// and, while nobody calls the pool, the object may be drawn into directly.
+/// and, as long as no thread calls the pool, the object may be drawn into directly.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -254,9 +254,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC
     })
 }
 
-/// Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of a program's own job system, beside
-/// the pool's threads or in their place. Writes 1 to `worked` (null is allowed), or 0 where there is nothing to do now that nobody does
-/// yet. A piece is one batch of calls to project, or what one bin has to draw: tens of microseconds as a rule.
+/// Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system, alongside the
+/// pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is pending that is not already
+/// being worked on. A piece is one batch of calls to project, or the batches one bin has to draw: usually tens of microseconds.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -275,8 +275,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolWorkOnce(pool: *const MOC_Threadpool, wor
     })
 }
 
-/// Writes 1 where everything that was submitted is drawn, else 0. MOC_ThreadpoolWorkOnce in a loop until then is a flush that never
-/// sleeps.
+/// Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a flush that
+/// never sleeps.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -292,7 +292,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolIsDone(pool: *const MOC_Threadpool, done:
     })
 }
 
-/// Writes how many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+/// Writes the number of the pool's worker threads: fewer than requested if there are fewer processors.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -308,9 +308,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetThreads(pool: *const MOC_Threadpool, t
     })
 }
 
-/// Writes into how many columns and rows of bins the screen is cut, which changes with the resolution.
+/// Writes the number of columns and rows of bins, which depends on the resolution.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and 0 by 0 is written.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, in which case 0 by 0 is written.
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. `bins_w` and `bins_h` are null or can be written.
@@ -326,24 +326,24 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
     })
 }
 
-/// Draws into `moc` from now on (null: into nothing), after what was submitted is drawn. The object keeps its near plane.
+/// Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
 ///
-/// The object may be destroyed before the pool or after it. It may be queried by MOC_TestRect and MOC_TestTriangles by any thread, also
-/// while the pool draws or clears (not while this function or MOC_ThreadpoolSetResolution runs): they answer from what is drawn by then.
-/// What would change or copy its buffer while something is in
-/// flight is refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even while
+/// the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has been drawn
+/// so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY); MOC_Flush waits for the
+/// pool.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY where `moc` belongs to another pool, and nothing is changed.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
 ///
 /// # Safety
-/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; nobody uses it or the
-/// object that the pool had meanwhile.
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; no other
+/// thread uses it or the pool's previous object meanwhile.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,
     moc: *mut MaskedOcclusionCulling,
 ) -> MOC_Status {
-    // SAFETY: the caller's contract; an object that is destroyed leaves its pool first.
+    // SAFETY: the caller's contract; destroying an object detaches it from its pool first.
     guard(|| unsafe {
         handle(pool)?
             .pool
@@ -369,7 +369,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     guard(|| done().because(Error::NoBuffer, EMPTY))
 }
 
-/// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane of the pool's object.
+/// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane on the pool's object.
 ///
 /// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
 ///

@@ -1,4 +1,4 @@
-//! What a pool draws and answers.
+//! Draws and queries of a pool.
 
 use super::mesh::{CheckedMesh, MeshArguments};
 use super::messages::note;
@@ -39,9 +39,9 @@ impl MOC_Threadpool {
     }
 }
 
-/// Sets the matrix of the calling thread's calls that follow, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
-/// vertices are in clip space. A thread that never set a matrix or a layout on this pool has those that any thread set last, so that
-/// one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
+/// Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
+/// vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
+/// so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool.
 ///
@@ -57,8 +57,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, mo
     })
 }
 
-/// Sets the vertex layout of the calling thread's calls that follow; null: (16, 4, 12), x, y, z, w packed, which fits no matrix:
-/// with one the last offset names z. As MOC_ThreadpoolSetMatrix for threads that set none.
+/// Sets the vertex layout of the calling thread's later calls; null: (16, 4, 12), packed x, y, z, w, which does not suit a
+/// matrix: with one the last offset is that of z. Threads that set none are treated as in MOC_ThreadpoolSetMatrix.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
 ///
@@ -81,8 +81,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
     })
 }
 
-/// MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and the arrays
-/// of all calls before may be changed or freed.
+/// MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and
+/// the arrays of all earlier calls may be changed or freed.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///
@@ -118,15 +118,16 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     })
 }
 
-/// Submits occluders and returns at once, or works until no more than `max_jobs` calls read their arrays. The arguments are those of
-/// MOC_RenderTriangles; the matrix and the layout are copied. The near plane is the object's.
+/// Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
+/// no longer holds. The arguments are those of MOC_RenderTriangles; matrix and layout are copied. The near plane is the
+/// object's.
 ///
-/// Errors: as there. Triangles that are dropped later are counted in the object's statistics.
+/// Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay as they
-/// are until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
-/// `model_to_clip` and `layout` are null or can be read.
+/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
+/// unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs`
+/// later calls do. `model_to_clip` and `layout` are null or can be read.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMesh))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
     pool: *const MOC_Threadpool,
@@ -152,13 +153,13 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
     guard(|| unsafe { handle(pool)?.render(mesh) })
 }
 
-/// As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices` on: an index that names a vertex
-/// that does not lie whole within it is an error, and nothing is drawn.
+/// As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices`: an index of a vertex
+/// that is not wholly within it is an error, and nothing is drawn.
 ///
 /// Errors: as MOC_RenderTrianglesChecked.
 ///
 /// # Safety
-/// As MOC_ThreadpoolRenderMesh, where `vertices` can be read for `vertex_floats` floats whatever the indices are.
+/// As MOC_ThreadpoolRenderMesh, but `vertices` can be read for `vertex_floats` floats whatever the indices are.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMeshChecked))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
     pool: *const MOC_Threadpool,
@@ -185,7 +186,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
     guard(|| unsafe { handle(pool)?.render(mesh) })
 }
 
-/// MOC_TestTriangles against what is drawn by now.
+/// MOC_TestTriangles against what has been drawn so far.
 ///
 /// Errors: as there.
 ///
@@ -217,7 +218,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestMesh(
     unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
 }
 
-/// MOC_TestTrianglesChecked against what is drawn by now.
+/// MOC_TestTrianglesChecked against what has been drawn so far.
 ///
 /// Errors: as there.
 ///
@@ -250,7 +251,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestMeshChecked(
     unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
 }
 
-/// MOC_TestRect against what is drawn by now. What was submitted and is not drawn hides nothing yet.
+/// MOC_TestRect against what has been drawn so far. Work that is submitted but not yet drawn hides nothing.
 ///
 /// Errors: as there.
 ///
@@ -307,7 +308,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     unsafe { guard_result(result, query) }
 }
 
-/// MOC_ComputePixelDepthBuffer of the pool's object, after what was submitted is drawn.
+/// MOC_ComputePixelDepthBuffer of the pool's object, after everything submitted is drawn.
 ///
 /// Errors: as there.
 ///
@@ -328,7 +329,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
         let out = |pixels| unsafe { slice_mut(out, pixels) };
         pool.with_pixels(out, flip)
             .because(Error::NoBuffer, EMPTY)
-            .because(Error::InvalidLayout, "out is not at a multiple of 4 bytes")
+            .because(Error::InvalidLayout, "out is not aligned to 4 bytes")
     })
 }
 

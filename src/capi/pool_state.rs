@@ -1,5 +1,5 @@
-//! The matrix and the vertex layout that are set on a pool: each thread has its own, so that no thread draws or tests with what
-//! another one set a moment ago.
+//! The matrix and vertex layout set on a pool: each thread has its own, so that no thread draws or tests with what another has
+//! just set.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -37,14 +37,14 @@ impl State {
     }
 }
 
-/// What was set on one pool.
+/// What was set on a pool.
 pub(super) struct PoolState {
-    /// By whichever thread came last: for threads that never set anything. Its address names the pool.
+    /// Set by any thread, most recently: used by threads that have never set anything. Its address identifies the pool.
     last: Arc<Mutex<State>>,
 }
 
 thread_local! {
-    /// What this thread set, for each pool that is still there.
+    /// What this thread set, for each pool that still exists.
     static OWN: RefCell<Vec<(Weak<Mutex<State>>, State)>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -55,15 +55,15 @@ impl Default for PoolState {
 }
 
 impl PoolState {
-    /// What the calling thread draws with.
+    /// The calling thread's state.
     pub fn get(&self) -> State {
         let own = |(pool, state): &(Weak<_>, State)| (Weak::as_ptr(pool) == Arc::as_ptr(&self.last)).then_some(*state);
-        // A thread that ends has none any more.
+        // A thread that is ending no longer has one.
         let own = OWN.try_with(|states| states.borrow().iter().find_map(own)).ok().flatten();
         own.unwrap_or_else(|| *self.last.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Changes what the calling thread draws with.
+    /// Changes the calling thread's state.
     pub fn change(&self, change: impl FnOnce(&mut State)) {
         let mut state = self.get();
         change(&mut state);

@@ -106,8 +106,8 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments) -> Resul
 /// - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
 /// - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
 ///   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
-///   a minimum is above its maximum, and on errors. NaN and such a minimum are told to the callback of
-///   MOC_SetMessageCallback, though the status is MOC_STATUS_OK.
+///   a minimum is above its maximum, and on errors. NaN and such a minimum are reported to the callback of
+///   MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
 ///
 /// Several threads may test at once.
 ///
@@ -143,8 +143,9 @@ pub unsafe extern "C" fn MOC_TestRect(
     unsafe { guard_result_as_set(result, query) }
 }
 
-/// [`MOC_TestRect`] in the default floating-point environment. By another call of it, so that the one way is compiled and inlined: a
-/// small rectangle takes ten nanoseconds. In pairs, which go through registers.
+/// [`MOC_TestRect`] run in the default floating-point environment. It calls the exported function again, so that the fast path
+/// is compiled and inlined only once: a small rectangle takes ten nanoseconds. The arguments come in pairs, which are passed in
+/// registers.
 ///
 /// # Safety
 /// As there.
@@ -161,7 +162,7 @@ unsafe fn test_rect_elsewhere(
     in_default_environment(|| unsafe { MOC_TestRect(moc, xmin, ymin, xmax, ymax, wmin, result) })
 }
 
-/// What no caller means a rectangle to be: xmin, ymin, xmax, ymax and wmin.
+/// What is probably wrong with a rectangle, if anything: xmin, ymin, xmax, ymax and wmin.
 pub(super) fn odd_rectangle([xmin, ymin, xmax, ymax, wmin]: [f32; 5]) -> Option<&'static str> {
     if [xmin, ymin, xmax, ymax, wmin].iter().any(|number| number.is_nan()) {
         Some("a number is NaN: the answer is MOC_VISIBLE")
@@ -230,7 +231,7 @@ unsafe fn depth(
         return Err(Refusal::new(Error::InvalidSize, "out_floats is less than width times height"));
     }
     // SAFETY: at least `pixels` floats, as just checked or by the caller's contract.
-    let out = unsafe { slice_mut(out, pixels) }.because(Error::InvalidLayout, "out is not at a multiple of 4 bytes")?;
+    let out = unsafe { slice_mut(out, pixels) }.because(Error::InvalidLayout, "out is not aligned to 4 bytes")?;
     Ok(moc.compute_pixel_depth_buffer(out, flip_y)?)
 }
 
@@ -253,8 +254,8 @@ pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, o
     })
 }
 
-/// Writes how many triangles draws dropped since the object was made, for a NaN, an infinite coordinate, or a distance beyond
-/// 2^40. They are counted whether or not the settings ask for statistics.
+/// Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite coordinate, or a
+/// distance beyond 2^40. They are counted whether or not the settings ask for statistics.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///

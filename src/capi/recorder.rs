@@ -78,11 +78,11 @@ pub struct MOC_RecordedCall {
 }
 
 /// Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
-/// format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on as they are. Setting another near
+/// format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged. Setting another near
 /// plane or resolution ends the recording, once it holds a call; merges and lists are not recorded.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while it records already, MOC_STATUS_FILE where
-/// the file cannot be made, or on Windows `path` is not UTF-8.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
+/// file cannot be created, or on Windows if `path` is not UTF-8.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
@@ -158,8 +158,8 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
 /// Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
 /// The caller gives the recording back to MOC_RecordingDestroy. Several threads may read from one recording at once.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where the file cannot be read, or on Windows `path` is not UTF-8,
-/// MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, cut or broken.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if the file cannot be read, or on Windows if `path` is not UTF-8,
+/// MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, truncated or corrupt.
 ///
 /// # Safety
 /// `path` is null or ends with a zero, `out` is null or can be written.
@@ -266,7 +266,7 @@ unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Refusal> {
     let path = unsafe { CStr::from_ptr(path) };
     #[cfg(unix)]
     let path: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(path.to_bytes());
-    // Not the code page of the program or of the system: those cannot name every file.
+    // Not the program's or the system's code page: those cannot name every file.
     #[cfg(not(unix))]
     let path = path.to_str().map_err(|_| Error::File)?;
     Ok(Path::new(path))

@@ -1,8 +1,8 @@
-//! Why a call was refused: the status that it returns, and for the message callback the argument and what is wrong with it.
+//! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong with it.
 
 use crate::Error;
 
-/// An [`Error`] and, where the boundary knows more than that, which argument it was.
+/// An [`Error`] and, where the boundary knows more, which argument it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub error: Error,
@@ -14,23 +14,23 @@ impl Refusal {
         Self { error, why: Some(why) }
     }
 
-    /// What a reader of C has to change.
+    /// The explanation, in terms of the C interface.
     pub fn why(self) -> &'static str {
         match (self.why, self.error) {
             (Some(why), _) => why,
-            (None, Error::NullPointer) => "a pointer that has to name something is null",
-            (None, Error::InvalidEnum) => "an enumeration has no such value",
-            (None, Error::InvalidSize) => "a size, count or rectangle is outside of what is accepted",
-            (None, Error::InvalidNumber) => "a number that has to be finite is not",
-            (None, Error::InvalidLayout) => "a vertex layout or the alignment of a pointer is not accepted",
+            (None, Error::NullPointer) => "a required pointer is null",
+            (None, Error::InvalidEnum) => "an enumeration argument has an unknown value",
+            (None, Error::InvalidSize) => "a size, count or rectangle is out of range",
+            (None, Error::InvalidNumber) => "a number is not finite",
+            (None, Error::InvalidLayout) => "a vertex layout is not accepted, or a pointer is misaligned",
             (None, Error::NoBuffer) => "no buffer: call MOC_SetResolution first",
-            (None, Error::IndexOutOfRange) => "an index names a vertex that is not there",
+            (None, Error::IndexOutOfRange) => "an index names a vertex that does not exist",
             (None, Error::SizeMismatch) => "the two buffers differ in resolution or row direction",
-            (None, Error::ListFull) => "a triangle list is full: what fitted is in it, the rest is not drawn",
-            (None, Error::OutOfMemory) => "the allocator gave no memory, or memory that is not aligned as asked for",
-            (None, Error::Internal) => "the library failed inside",
-            (None, Error::File) => "the recording's file cannot be made, written or read",
-            (None, Error::InvalidRecording) => "the file is no recording, or it is cut or broken",
+            (None, Error::ListFull) => "a triangle list is full: triangles that did not fit are not drawn",
+            (None, Error::OutOfMemory) => "the allocator returned no memory, or misaligned memory",
+            (None, Error::Internal) => "internal error in the library",
+            (None, Error::File) => "the recording's file cannot be created, written or read",
+            (None, Error::InvalidRecording) => "the file is not a recording, or it is truncated or corrupt",
             (None, Error::Busy) => "a pool is drawing into the object: call MOC_Flush first",
         }
     }
@@ -42,9 +42,9 @@ impl From<Error> for Refusal {
     }
 }
 
-/// For results of the Rust API, where the boundary can say which argument is meant.
+/// Adds to results of the Rust API which argument was wrong, where the boundary knows it.
 pub(super) trait Because<T> {
-    /// Where the error is `error`, `why` says what is wrong.
+    /// If the error is `error`, explains it with `why`.
     fn because(self, error: Error, why: &'static str) -> Result<T, Refusal>;
 }
 

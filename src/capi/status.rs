@@ -51,8 +51,8 @@ pub enum MOC_Status {
     MOC_STATUS_FILE = 12,
     /// A file is no recording, or it is cut or broken.
     MOC_STATUS_INVALID_RECORDING = 13,
-    /// A pool has something in flight that is drawn into the object: call MOC_Flush first. Or the object belongs to another pool,
-    /// or it records already.
+    /// A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
+    /// recording.
     MOC_STATUS_BUSY = 14,
 }
 
@@ -93,7 +93,7 @@ const TEXTS: [&CStr; 15] = [
     c"the library failed inside",
     c"a recording's file cannot be made, written or read",
     c"a file is no recording, or it is cut or broken",
-    c"a pool is drawing into the object, or it belongs to another pool, or it records already",
+    c"a pool is drawing into the object, or it belongs to another pool, or it is already recording",
 ];
 
 /// The MOC_ABI_VERSION that the library was built with.
@@ -116,8 +116,8 @@ pub(super) fn done() -> MOC_Status {
     MOC_Status::MOC_STATUS_OK
 }
 
-/// Runs the body of an exported function; a panic becomes a status. The closure has to stand in that function: messages take
-/// the name from there.
+/// Runs the body of an exported function; a panic becomes a status. The closure must be written inside that function: messages
+/// take the function's name from it.
 pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
     in_default_environment(|| run(messages::function_of::<F>, body))
 }
@@ -134,7 +134,7 @@ pub(super) unsafe fn guard_result<F: FnOnce() -> Result<CullingResult, Refusal>>
     in_default_environment(|| unsafe { guard_result_as_set(result, body) })
 }
 
-/// The same for a caller that is in the default floating-point environment.
+/// The same, when already in the default floating-point environment.
 ///
 /// # Safety
 /// As there.
@@ -161,7 +161,7 @@ fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -
         Ok(Ok(())) => done(),
         Ok(Err(refusal)) => messages::refused(name(), refusal),
         Err(payload) => {
-            // Dropping what was thrown could panic again.
+            // Dropping the panic's payload could panic again.
             core::mem::forget(payload);
             messages::refused(name(), Error::Internal.into())
         }
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    // Where a panic does not unwind there is nothing to catch: it ends the process.
+    // On targets that do not unwind there is nothing to catch: a panic ends the process.
     #[cfg(panic = "unwind")]
     #[test]
     fn a_panic_becomes_a_status_and_the_answer_visible() {

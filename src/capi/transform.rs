@@ -15,7 +15,7 @@ use crate::{Error, VertexLayout};
 /// bytes a vertex), its last offset names z. All pointers may lie at any address.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
-/// MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory holds.
+/// MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory can hold.
 ///
 /// # Safety
 /// `matrix` and `layout` are null or can be read, and so can `n_vertices` vertices. `out` can be written for

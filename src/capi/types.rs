@@ -23,7 +23,7 @@ pub enum MOC_Implementation {
     MOC_AVX512 = 3,
     /// aarch64's Advanced SIMD.
     MOC_NEON = 16,
-    /// WebAssembly's 128-bit vectors, in a module that is compiled for them.
+    /// WebAssembly's 128-bit SIMD, in modules compiled with it.
     MOC_SIMD128 = 17,
 }
 
@@ -104,8 +104,8 @@ pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: 
 /// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
 pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 
-/// Calls `alloc(alignment, size)` and returns what it gave, for languages whose allocators throw: nothing may be thrown into the
-/// library, so that it catches, and returns null. It is called wherever `alloc` would be.
+/// Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may enter the
+/// library, so this function catches it and returns null. It is called wherever `alloc` would be.
 pub type MOC_CallAlloc =
     Option<unsafe extern "C" fn(alloc: MOC_AlignedAlloc, alignment: usize, size: usize) -> *mut c_void>;
 
@@ -122,7 +122,7 @@ pub struct MOC_Settings {
     pub y_axis: i32,
     /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
     pub precise_coverage: i32,
-    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which takes a tenth of the time of a draw. 0: only
+    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
     /// MOC_GetDroppedTriangles counts. Default 0.
     pub statistics: i32,
     /// Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
@@ -130,8 +130,8 @@ pub struct MOC_Settings {
     pub alloc: MOC_AlignedAlloc,
     /// Takes back what `alloc` gave. Null exactly when `alloc` is.
     pub free: MOC_AlignedFree,
-    /// Calls `alloc` in place of the library, where that has to be prepared for what it does. Null: the library calls it.
-    /// Without `alloc` of no effect. Default null.
+    /// Calls `alloc` on the library's behalf, when the call must be guarded. Null: the library calls it directly. Ignored if
+    /// `alloc` is null. Default null.
     pub call_alloc: MOC_CallAlloc,
 }
 
@@ -210,8 +210,8 @@ pub struct MOC_OccludeeStatistics {
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; else zeros. The same on every instruction set. The 72 bytes
-/// are those of Intel's struct, and stay so; other counts have functions of their own, as MOC_GetDroppedTriangles.
+/// All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. The 72
+/// bytes are those of Intel's struct, and will stay so; other counts have their own functions, such as MOC_GetDroppedTriangles.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MOC_Statistics {
@@ -315,7 +315,7 @@ pub(super) fn implementation(value: i32) -> Result<Implementation, Refusal> {
         3 => Implementation::Avx512,
         16 => Implementation::Neon,
         17 => Implementation::Simd128,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "implementation is no MOC_Implementation")),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "implementation is not a MOC_Implementation")),
     })
 }
 
@@ -325,7 +325,7 @@ pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Refusal> {
         1 => UpdateRule::Quick,
         2 => UpdateRule::Accurate,
         3 => UpdateRule::FourLayer,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "update_rule is no MOC_UpdateRule")),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "update_rule is not a MOC_UpdateRule")),
     })
 }
 
@@ -333,26 +333,27 @@ pub(super) fn y_axis(value: i32) -> Result<YAxis, Refusal> {
     Ok(match value {
         0 => YAxis::Down,
         1 => YAxis::Up,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "y_axis is no MOC_YAxis")),
+        _ => return Err(Refusal::new(Error::InvalidEnum, "y_axis is not a MOC_YAxis")),
     })
 }
 
 pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Refusal> {
-    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "winding is no MOC_BackfaceWinding");
+    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "winding is not a MOC_BackfaceWinding");
     BackfaceWinding::from_number(value).ok_or(WHY)
 }
 
 pub(super) fn culling_result(value: i32) -> Result<CullingResult, Refusal> {
-    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "result is no MOC_CullingResult, nor MOC_RESULT_UNKNOWN");
+    const WHY: Refusal =
+        Refusal::new(Error::InvalidEnum, "result is neither a MOC_CullingResult nor MOC_RESULT_UNKNOWN");
     CullingResult::from_number(value).ok_or(WHY)
 }
 
 pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Refusal> {
-    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "clip_planes has a bit that is no MOC_ClipPlanes");
+    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "clip_planes has a bit that is not in MOC_ClipPlanes");
     u32::try_from(value).ok().and_then(ClipPlanes::from_bits).ok_or(WHY)
 }
 
-/// 0 or 1; `why` says which argument is something else.
+/// 0 or 1; `why` names the argument if it is neither.
 pub(super) fn flag(value: i32, why: &'static str) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),

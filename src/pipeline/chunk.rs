@@ -197,7 +197,8 @@ mod tests {
         }
     }
 
-    /// A mesh may begin with any index, and its base lie as far before what is read: further than pointers of 32 bits count.
+    /// A mesh may start at any index, so its base may lie that far before the data read: further than 32-bit pointers can
+    /// count.
     #[test]
     fn a_base_far_before_the_first_vertex_changes_nothing() {
         let (width, height) = (200, 120);
@@ -226,7 +227,7 @@ mod tests {
                     indices.extend([k, k + 1, k + grid + 1, k, k + grid + 1, k + grid]);
                 }
             }
-            // All of it, and triangles that are strewn and too few for a vector.
+            // The whole mesh, and scattered triangles too few for a vector.
             let strewn: Vec<u32> = indices.chunks(3).step_by(211).flatten().copied().collect();
             let few: Vec<u32> = indices[..9].to_vec();
             for (triangles, &implementation) in

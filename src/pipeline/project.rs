@@ -182,8 +182,8 @@ impl<S: Simd> Reader<S> {
     /// Address of x of a vertex.
     #[inline(always)]
     pub fn at(&self, index: u32) -> *const u8 {
-        // The stride is not negative. With pointers of 32 bits the product may overflow: the caller's base may have
-        // wrapped around, too, if the mesh does not name its first vertices.
+        // The stride is not negative. With 32-bit pointers the product may wrap around, and so may the caller's base have, if
+        // the mesh does not use its first vertices.
         self.source.base.wrapping_add((index as usize).wrapping_mul(self.stride()))
     }
 

@@ -1,10 +1,10 @@
 //! The threads of a pool: take work, do it, sleep when there is none.
 //!
-//! While a thread of the pool is awake, nothing that was submitted waits for another call: whoever leaves work behind sees to it
-//! that one of them looks again ([`Crew::leave_to_threads`]).
+//! While a worker thread is awake, submitted work never waits for a further call: a thread that leaves work behind ensures that
+//! a worker checks for it ([`Crew::leave_to_threads`]).
 //!
-//! Callers lend what they submit until a flush comes back. A panic in here, which would be a bug, could make it come back early or
-//! never, so it ends the process (as in rayon); a panic in drawing is caught, and occluders are missing.
+//! Callers lend what they submit until a flush returns. A panic in the scheduler, which would be a bug, could make the flush
+//! return early or never, so it aborts the process (as in rayon); a panic in drawing is caught, and occluders are missing.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
@@ -15,7 +15,7 @@ use super::sync::{Arc, Condvar, Glance, Mutex, MutexGuard, external_thread};
 use super::target::{Call, Target, Work};
 use crate::pipeline::Kept;
 
-/// Ends the process where a panic would leave what `action` does half done.
+/// Aborts the process if `action` panics, since that would leave the state inconsistent.
 fn abort_on_panic<R>(action: impl FnOnce() -> R) -> R {
     struct Abort;
     impl Drop for Abort {
@@ -39,7 +39,7 @@ pub(super) struct Crew {
     progress: Condvar,
     /// Counts what was finished.
     finished: Glance,
-    /// Counts what was submitted and is worth a thread's while.
+    /// Counts submissions that make a batch worth taking.
     news: Glance,
 }
 
@@ -48,7 +48,7 @@ struct State {
     target: Option<Arc<Target>>,
     /// Memory to be used again.
     spare: Vec<Kept>,
-    /// Threads of the pool; how many of them wait for work, and how many of those were woken and are not awake yet.
+    /// Worker threads; how many of them wait for work; and how many of those have been notified but are not awake yet.
     threads: usize,
     idle: usize,
     woken: usize,
@@ -61,7 +61,7 @@ struct State {
 }
 
 impl State {
-    /// Something was submitted.
+    /// Called after each submission.
     fn begin(&self, was_done: bool) {
         if was_done && let Some(target) = &self.target {
             target.turn();
@@ -108,7 +108,7 @@ impl Crew {
         state.threads += 1;
         // Woken on the processor of who woke it the last time, and did not leave it.
         let (mut in_turn, mut may_leave) = (false, true);
-        // It waited a moment for more, since it did something or slept.
+        // Whether it has already spun for more work since its last task or sleep.
         let mut waited = false;
         while !state.stopped {
             let task = match state.suspended {
@@ -121,7 +121,7 @@ impl Crew {
                     waited = false;
                     self.perform(state, task)
                 }
-                // Small calls follow each other faster than a thread wakes, and a batch of several costs less.
+                // Small calls arrive faster than a thread wakes, and a batch of several costs less.
                 None if !waited && !state.suspended => {
                     waited = true;
                     let count = self.news.count();
@@ -164,7 +164,7 @@ impl Crew {
         }
     }
 
-    /// Wakes a thread for work that is left where none is awake to find it.
+    /// Wakes a worker for remaining work if none is awake to find it.
     fn leave_to_threads(&self, state: &mut State) {
         if state.idle == state.threads && state.woken == 0 {
             self.wake(state);
@@ -241,14 +241,13 @@ impl Crew {
         state
     }
 
-    /// Hands in a call or a part of one; `ends`: the call is complete with it. Where there is no room, the caller works until
-    /// there is.
+    /// Submits a call or part of one; `ends`: it completes the call. If there is no room, the caller works until there is.
     pub fn submit(&self, mut call: Call, ends: bool) {
         let weight = call.indices / 3;
         abort_on_panic(|| {
             let mut state = self.lock();
             loop {
-                // Under the lock: with the order of calls that of clears is settled.
+                // Under the lock, which orders clears and calls relative to each other.
                 call.clears = state.target.as_ref().map_or(0, |target| target.clears());
                 let was_done = state.schedule.is_done();
                 match state.schedule.submit(call, weight, ends) {
@@ -269,12 +268,12 @@ impl Crew {
         });
     }
 
-    /// The same for what needs not be kept.
+    /// The same for work that needs no binning.
     pub fn submit_ready(&self, work: impl FnOnce() -> Work) {
         abort_on_panic(|| self.leave_to_threads(&mut self.push_ready(work)));
     }
 
-    /// Draws everything that was submitted, then this, before it returns. Where nothing else is in flight, no thread is woken for it.
+    /// Draws everything submitted, then this, before it returns. If nothing else is in flight, no thread is woken for it.
     pub fn do_now(&self, work: impl FnOnce() -> Work) {
         self.flush();
         abort_on_panic(|| self.finish(self.push_ready(work)));
@@ -306,11 +305,11 @@ impl Crew {
         while state.schedule.in_flight().start < end {
             state = self.help(state);
         }
-        // Others may have submitted meanwhile.
+        // Other threads may have submitted meanwhile.
         self.leave_to_threads(&mut state);
     }
 
-    /// Does one task, if there is one that nobody does yet.
+    /// Does one task, if one is pending that no thread has taken.
     pub fn work_once(&self) -> bool {
         abort_on_panic(|| {
             let mut state = self.lock();

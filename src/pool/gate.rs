@@ -1,7 +1,7 @@
-//! The way to a pool's object: who submits or queries passes the gate, who exchanges or resizes the object shuts it.
+//! Access to a pool's object: calls that submit or query pass the gate, calls that exchange or resize the object shut it.
 //!
-//! The object knows the gate of its pool ([`Attachment`](crate::attachment::Attachment)), so that queries of the object itself take
-//! the pool's way while the pool draws, and so that neither is used by the other after it went away.
+//! The object knows the gate of its pool ([`Attachment`](crate::attachment::Attachment)), so that direct queries of the object
+//! go through the pool while it draws, and so that neither is used by the other after it is gone.
 
 use core::ptr::NonNull;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -15,13 +15,13 @@ use crate::{CullingResult, Error, MaskedOcclusionCulling};
 pub(super) struct Gate {
     pub crew: Arc<Crew>,
     bins: Bins,
-    /// Held for reading by who submits or queries, for writing by who exchanges it.
+    /// Read-locked to submit or query, write-locked to exchange the target.
     target: RwLock<Option<Arc<Target>>>,
-    /// Held around each call while calls are recorded, so that the file has them in the order in which they are drawn.
+    /// Held around each call while recording, so that the file has the calls in the order in which they are drawn.
     recording: Mutex<()>,
 }
 
-/// The target, held against an exchange.
+/// The target, protected from being exchanged.
 pub(super) type Pass<'a> = RwLockReadGuard<'a, Option<Arc<Target>>>;
 
 impl Gate {
@@ -29,10 +29,10 @@ impl Gate {
         Self { crew, bins, target: RwLock::new(None), recording: Mutex::new(()) }
     }
 
-    /// Draws into this object from now on, or into none, after what was submitted is drawn. True: it goes with the pool.
+    /// Draws into this object from now on, or into none, once what was submitted before is drawn. True: the pool owns it.
     ///
     /// # Errors
-    /// [`Error::Busy`] where it belongs to another pool; nothing is changed.
+    /// [`Error::Busy`] if it belongs to another pool; nothing is changed.
     ///
     /// # Safety
     /// As [`Target::new`], until another one is set or [`Pool::forget`] is called.
@@ -58,7 +58,7 @@ impl Gate {
         Ok(())
     }
 
-    /// Flushes, and hands back the object that goes with the pool. One that does not stays.
+    /// Flushes, and returns the object if the pool owns it. Any other object stays.
     pub fn take_owned(&self) -> Option<MaskedOcclusionCulling> {
         let mut gate = self.shut();
         if !gate.as_ref()?.is_owned() {
@@ -69,7 +69,7 @@ impl Gate {
         Arc::into_inner(gate.take()?)?.into_owned()
     }
 
-    /// Flushes, and has no object any more.
+    /// Flushes, and detaches the object.
     pub fn close(&self) {
         let mut gate = self.shut();
         self.crew.flush();
@@ -78,28 +78,29 @@ impl Gate {
         *gate = None;
     }
 
-    /// Flushes, and lets something be done to the object that may change its size. Nothing is in flight, and nobody submits or queries.
+    /// Flushes, and applies a change to the object that may alter its size. Nothing is in flight, and no thread submits or
+    /// queries meanwhile.
     pub fn resize(&self, change: impl FnOnce(&mut MaskedOcclusionCulling) -> Result<(), Error>) -> Result<(), Error> {
         let mut gate = self.shut();
         self.crew.flush();
         let target = gate.as_ref().ok_or(Error::NoBuffer)?;
-        // SAFETY: nothing is in flight, and nobody submits or queries while the gate is shut.
+        // SAFETY: nothing is in flight, and no thread submits or queries while the gate is shut.
         change(unsafe { &mut *target.pointer().as_ptr() })?;
         self.cut_again(&mut gate);
         Ok(())
     }
 
-    /// Makes the bins anew. Nothing is in flight.
+    /// Rebuilds the bins. Nothing may be in flight.
     fn cut_again(&self, gate: &mut Option<Arc<Target>>) {
         self.crew.set_target(None);
-        // Nobody else holds it: threads let go of it before they report what they did.
+        // No other reference exists: threads drop theirs before they report a task as done.
         if let Some(target) = gate.take().and_then(Arc::into_inner) {
             *gate = Some(Arc::new(target.resized(self.bins)));
         }
         self.crew.set_target(gate.clone());
     }
 
-    /// The target, whose bins fit its object: after a flush its owner may have given it another resolution.
+    /// The target, with bins that fit its object: after a flush the owner may have changed the resolution.
     pub fn pass(&self) -> Pass<'_> {
         loop {
             let pass = self.target.read().unwrap_or_else(PoisonError::into_inner);
@@ -125,14 +126,14 @@ impl Gate {
         self.target.write().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// While calls are recorded: the right to be the next.
+    /// The recording lock, while calls are recorded.
     pub fn recording(&self, target: &Target) -> Option<MutexGuard<'_, ()>> {
-        // Whoever has it may work meanwhile, for which it is not needed.
+        // Its holder may do pool work meanwhile, which does not need the lock.
         target.moc().recorder().is_on().then(|| self.recording.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// The object of a target is used again without the pool.
+/// Gives the target's object back for direct use.
 fn detach(target: &Option<Arc<Target>>) {
     if let Some(target) = target
         && !target.is_owned()
@@ -160,7 +161,8 @@ impl Pool for Gate {
         self.with_buffer(|target| {
             let tiles = target.moc().rectangle_tiles(edges)?;
             let recording = self.recording(target);
-            // Before: what is asked while something is drawn may be answered otherwise later, and no answer can be held to it.
+            // Checked before the query: an answer given while work is in flight depends on timing, so a replay cannot be
+            // compared with it.
             let settled = recording.is_some() && self.crew.is_done();
             let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
             target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);

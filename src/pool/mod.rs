@@ -8,16 +8,17 @@
 //!
 //! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
 //! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `processor.rs` moves one
-//! that is woken on its waker's processor, `gate.rs` leads to the object, `target.rs` has the bins and their locks, `grid.rs` the
-//! pieces of the screen.
+//! that is woken on its waker's processor, `gate.rs` guards access to the object, `target.rs` has the bins and their locks,
+//! `grid.rs` the bins' rectangles on the screen.
 //!
-//! What the arrays of a call are read for is to keep it. At most `max_jobs` calls are unkept when a call returns, so that a program
-//! may go round among one array more without a flush. Whether what was kept is drawn, only a query can tell.
+//! A call's arrays are read only to bin it ("keep"). At most `max_jobs` calls are not yet binned when a call returns, so a
+//! program may rotate among `max_jobs` + 1 arrays without a flush. Whether binned calls are drawn yet is visible only to
+//! queries.
 //!
-//! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does who flushes: a
-//! thread that sleeps takes tens of microseconds to wake, in which a small frame is drawn. When there is nothing for such a caller
-//! to do, it waits 20 microseconds for more before it sleeps, as threads of the pool do. Threads beyond the processors are not started: they would only take
-//! turns with the others, and interrupt one that holds a bin.
+//! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does a flushing
+//! thread: a sleeping thread takes tens of microseconds to wake, long enough to draw a small frame. When there is nothing for
+//! such a caller, or for a worker thread, to do, it spins for 20 microseconds before it sleeps. Threads beyond the processors are not started: they
+//! would only take turns with the others, and interrupt one that holds a bin.
 
 mod crew;
 mod gate;
@@ -86,7 +87,7 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` threads that are its own and nothing else out of the ordinary; see [`ThreadpoolSettings`].
+    /// A pool of `threads` worker threads, with defaults otherwise; see [`ThreadpoolSettings`].
     ///
     /// # Errors
     /// As [`Self::with_settings`].
@@ -112,8 +113,8 @@ impl CullingThreadpool {
     /// A pool whose threads sleep until [`Self::wake_threads`].
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] where `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` above 1,024; [`Error::OutOfMemory`]
-    /// where the system starts no more threads.
+    /// [`Error::InvalidSize`] if `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` is above 1,024; [`Error::OutOfMemory`] if
+    /// the system cannot start a thread.
     pub fn with_settings(settings: ThreadpoolSettings) -> Result<Self, Error> {
         let ThreadpoolSettings { bins_w, bins_h, max_jobs, .. } = settings;
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || settings.threads > MAX_THREADS {
@@ -133,10 +134,10 @@ impl CullingThreadpool {
             let (crew, started) = (crew.clone(), started.clone());
             let work = move || {
                 if let Some(started) = &started {
-                    // The thread works without what the callback did not finish.
+                    // If the callback panics, the thread works all the same.
                     let _ = catch_unwind(AssertUnwindSafe(|| started(number)));
                 }
-                // The callback may have set another one.
+                // The callback may have changed the environment.
                 in_default_environment(|| crew.work(number as usize));
             };
             let name = thread_name(&settings.thread_name, number);
@@ -147,15 +148,15 @@ impl CullingThreadpool {
         Ok(pool)
     }
 
-    /// How many threads the pool has of its own: fewer than were asked for where there are fewer processors.
+    /// The number of worker threads: fewer than requested if there are fewer processors.
     pub fn thread_count(&self) -> u32 {
         self.threads.len() as u32
     }
 
-    /// Into how many columns and rows of bins the screen is cut.
+    /// The number of columns and rows of bins.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`] where the pool has no object with a buffer.
+    /// [`Error::NoBuffer`] if the pool has no object with a buffer.
     pub fn bin_count(&self) -> Result<(u32, u32), Error> {
         self.gate.with_buffer(|target| Ok(target.bin_count()))
     }
@@ -165,8 +166,8 @@ impl CullingThreadpool {
         self.gate.crew.set_suspended(false);
     }
 
-    /// Draws what was submitted, and lets the threads sleep. What is submitted later waits until they are woken, or somebody flushes or
-    /// helps.
+    /// Draws what was submitted, then puts the threads to sleep. Work submitted later waits until they are woken, or until a
+    /// call flushes or does the work ([`Self::work_once`]).
     pub fn suspend_threads(&self) {
         self.flush();
         self.gate.crew.set_suspended(true);
@@ -177,13 +178,13 @@ impl CullingThreadpool {
         self.gate.crew.flush();
     }
 
-    /// Does one piece of the work that is pending, in the calling thread, and returns: for the jobs of an engine's own job system, which
-    /// may do so beside the pool's threads or in their place. False: there is nothing to do now that nobody does yet.
+    /// Does one piece of pending work on the calling thread and returns: for jobs of an engine's own job system, alongside the
+    /// pool's threads or instead of them. False: nothing is pending that is not already being worked on.
     pub fn work_once(&self) -> bool {
         self.gate.crew.work_once()
     }
 
-    /// Is everything drawn that was submitted? A loop of [`Self::work_once`] until then is a flush that never sleeps.
+    /// Whether everything submitted is drawn. Calling [`Self::work_once`] in a loop until then is a flush that never sleeps.
     pub fn is_done(&self) -> bool {
         self.gate.crew.is_done()
     }
@@ -194,7 +195,7 @@ impl CullingThreadpool {
         let moc = NonNull::from(Box::leak(Box::new(moc)));
         // SAFETY: leaked just now, and freed with the target.
         let done = unsafe { self.gate.exchange(Some((moc, true))) };
-        debug_assert_eq!(done, Ok(()), "nobody else has it");
+        debug_assert_eq!(done, Ok(()), "no other pool has it");
     }
 
     /// Flushes, and hands the object back. Nothing where there is none that the pool owns.
@@ -202,15 +203,16 @@ impl CullingThreadpool {
         self.gate.take_owned()
     }
 
-    /// Draws into this object from now on, or into none, after what was submitted is drawn. The object keeps its near plane.
+    /// Draws into this object from now on, or into none, once what was submitted before is drawn. The object keeps its near
+    /// plane.
     ///
     /// # Errors
-    /// [`Error::Busy`] where the object belongs to another pool; nothing is changed.
+    /// [`Error::Busy`] if the object belongs to another pool; nothing is changed.
     ///
     /// # Safety
-    /// The object stays where it is until another one is set, the pool is dropped, or the object is, which may be in any order.
-    /// Meanwhile no `&mut` to it is used while the pool has something in flight or is called; `&` may be used for queries at any time,
-    /// but while the pool sets an object or a resolution.
+    /// The object does not move until another one is set, the pool is dropped, or the object itself is dropped; the two may be
+    /// dropped in either order. Until then no `&mut` to it is used while the pool has work in flight or is being called; `&`
+    /// may be used for queries at any time, except while the pool sets an object or a resolution.
     pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) -> Result<(), Error> {
         // SAFETY: the caller's contract.
         unsafe { self.gate.exchange(moc.map(|moc| (moc, false))) }
@@ -227,7 +229,8 @@ impl CullingThreadpool {
     /// Flushes, and sets the object's near plane, in clip-space w.
     ///
     /// # Errors
-    /// [`Error::InvalidNumber`] for NaN or an infinity: the plane stays where it was. [`Error::NoBuffer`] where the pool has no object.
+    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged. [`Error::NoBuffer`] if the pool has no
+    /// object.
     pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
         self.flush();
         if !near.is_finite() {
@@ -414,7 +417,7 @@ impl CullingThreadpool {
 impl Drop for CullingThreadpool {
     /// Draws what was submitted and ends the threads.
     fn drop(&mut self) {
-        // The object may go before or after.
+        // Detached here, so that the object may be dropped before or after the pool.
         self.gate.close();
         self.gate.crew.stop();
         for thread in self.threads.drain(..) {
@@ -424,9 +427,9 @@ impl Drop for CullingThreadpool {
     }
 }
 
-/// What the system shows as the name of a thread.
+/// The name of a thread as the system shows it.
 fn thread_name(prefix: &str, number: u32) -> String {
-    // A NUL would end it, and is not accepted.
+    // Cut at a NUL, which the system does not accept.
     let prefix: String = prefix.chars().take_while(|&c| c != '\0').collect();
     format!("{prefix} {number}")
 }

@@ -17,8 +17,8 @@ impl Processor {
         usize::try_from(unsafe { libc::sched_getcpu() }).ok().map(Self)
     }
 
-    /// Moves the calling thread to another one of those that it may run on, if there is one; it may come back. False: not
-    /// again, for that did not work, or somebody else says where the thread runs.
+    /// Moves the calling thread to another one of those that it may run on, if there is one; it may come back. False: do not
+    /// try again, because it failed or because something else sets the thread's affinity.
     ///
     /// On newer kernels the thread then keeps to the processors that there were, if others are added to the machine.
     #[must_use]
@@ -26,9 +26,9 @@ impl Processor {
         self.leave_while(|| ())
     }
 
-    /// `meanwhile` runs when the thread has moved and may not come back yet. An affinity that the program gives the thread
-    /// by then stays: it is not the one that was set here. Linux cannot compare and set in one step, so between the look
-    /// and the write there is time for one more, of a system call's length.
+    /// `meanwhile` runs once the thread has moved and may not return yet. An affinity that the program sets on the thread by
+    /// then is kept, because it differs from the one set here. Linux has no atomic compare-and-set for this, so an
+    /// affinity set between the check and the write, a system call apart, is lost.
     fn leave_while(self, meanwhile: impl FnOnce()) -> bool {
         let Some(all) = affinity() else { return false };
         let mut others = all;

@@ -22,7 +22,7 @@ const STRANGERS_LEAD: usize = 2 * LEAD;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
 
-/// Makes the schedule panic, to see what comes of it.
+/// Makes the schedule panic, to test what happens then.
 #[cfg(test)]
 pub(super) static BREAKS: core::sync::atomic::AtomicBool = core::sync::atomic::AtomicBool::new(false);
 
@@ -35,7 +35,7 @@ pub(super) enum Task<C, W> {
 }
 
 enum Stage<C, W> {
-    /// Takes calls while it is the last.
+    /// Accepts calls while it is the last batch.
     Open(Vec<C>),
     /// Somebody keeps it.
     Taken,
@@ -46,9 +46,9 @@ struct Batch<C, W> {
     stage: Stage<C, W>,
     /// Bins that did not draw it yet.
     bins_left: usize,
-    /// Calls of the application that end in it: a large one is submitted in parts.
+    /// Application calls that end in this batch: a large call is submitted in parts.
     ends: usize,
-    /// What its calls weigh.
+    /// Total weight of its calls.
     weight: usize,
 }
 
@@ -70,14 +70,14 @@ pub(super) struct Schedule<C, W> {
     first: u64,
     open: u64,
     ready: u64,
-    /// Most batches in flight, and most calls whose arrays are still read.
+    /// Maximum of batches in flight, and of calls whose arrays are still read.
     max: usize,
     /// Calls whose arrays are still read.
     calls: usize,
 }
 
 impl<C, W: Clone> Schedule<C, W> {
-    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be kept.
+    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be binned ("kept").
     pub fn new(bins: usize, max: usize) -> Self {
         let (first, open, ready) = (0, 0, 0);
         Self {
@@ -110,8 +110,8 @@ impl<C, W: Clone> Schedule<C, W> {
         self.bins = (0..bins).map(|thread| Bin { next: self.first, busy: false, thread }).collect();
     }
 
-    /// Takes a call or a part of one in, or gives it back where there is no room. `weight`: its triangles; `ends`: the call is
-    /// complete with it. True: there is something worth waking a thread for.
+    /// Accepts a call or part of one, or returns it if there is no room. `weight`: its triangles; `ends`: it completes the
+    /// call. True: there is now something worth waking a thread for.
     pub fn submit(&mut self, call: C, weight: usize, ends: bool) -> Result<bool, C> {
         if ends && self.calls >= self.max {
             return Err(call);
@@ -137,7 +137,7 @@ impl<C, W: Clone> Schedule<C, W> {
         Ok(closes || weight >= WORTHWHILE || most == 1)
     }
 
-    /// A batch takes no more calls: with half of those that may wait, one fills while another is kept.
+    /// The most calls in a batch: with half of those that may wait, one batch fills while another is binned.
     fn batch_calls(&self) -> usize {
         self.max.div_ceil(2)
     }
@@ -177,7 +177,7 @@ impl<C, W: Clone> Schedule<C, W> {
         self.claim_worthwhile(thread).or_else(|| self.claim_batch(0))
     }
 
-    /// The same, but for a batch that takes more calls and is not worth a thread's while yet.
+    /// The same, except for an open batch that is too light to be worth taking yet.
     pub fn claim_worthwhile(&mut self, thread: usize) -> Option<Task<C, W>> {
         #[cfg(test)]
         assert!(!BREAKS.load(core::sync::atomic::Ordering::Relaxed), "broken on purpose");
@@ -217,7 +217,7 @@ impl<C, W: Clone> Schedule<C, W> {
         !bin.busy && bin.next < self.ready
     }
 
-    /// Is there so much to draw in a bin?
+    /// Is there at least `lead` weight to draw in a bin?
     fn is_behind(&self, bin: &Bin, lead: usize) -> bool {
         let mut weight = 0;
         self.batches.range((bin.next - self.first) as usize..(self.ready - self.first) as usize).any(|batch| {
@@ -368,7 +368,7 @@ mod tests {
             }
             assert_eq!(schedule.submit(7, 1, true), Err(7));
             assert_eq!(schedule.in_flight(), 0..batches);
-            // One batch is kept: its calls are done with their arrays, though nothing is drawn.
+            // One batch is binned: the arrays of its calls are free, though nothing is drawn.
             let Some(Task::Keep { batch, calls }) = schedule.claim(0) else { panic!("a full batch is worth keeping") };
             schedule.kept(batch, calls);
             assert_eq!(

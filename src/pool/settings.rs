@@ -1,29 +1,31 @@
-//! How a pool is made.
+//! Settings of a pool.
 
-/// Of what a [`CullingThreadpool`](crate::CullingThreadpool) is made.
+/// Settings of a [`CullingThreadpool`](crate::CullingThreadpool).
 pub struct ThreadpoolSettings {
-    /// Threads of the pool's own. There are fewer where there are fewer processors besides the caller's, but one at least: more would
-    /// take turns with the others, and interrupt one that holds a bin. 0: the work is done by who flushes, submits or helps.
+    /// Worker threads of the pool. Fewer are started if there are fewer processors besides the caller's, but at least one: more
+    /// would only take turns with the others, and preempt one that holds a bin. 0: the work is done by the calls that flush or
+    /// submit, and by `work_once`.
     pub threads: u32,
-    /// The columns into which the screen is cut. There are no more than four bins per thread, and none is smaller than 128 by 64 pixels;
-    /// rows of the screen first, because threads side by side would write to the same cache lines.
+    /// Columns of bins. There are at most four bins per thread, and none is smaller than 128 by 64 pixels; the screen is
+    /// divided into rows first, because threads side by side would write to the same cache lines.
     pub bins_w: u32,
-    /// The rows.
+    /// Rows of bins.
     pub bins_h: u32,
-    /// Calls whose arrays may still be read when a call that draws returns: a program may go round among one array more without a flush.
-    /// Small calls are gathered into batches of half as many at most, so that a larger number makes them cheaper.
+    /// How many calls' arrays may still be read when a draw call returns: a program may rotate among one array more without a
+    /// flush. Small calls are gathered into batches of at most half as many, so a larger number makes them cheaper.
     pub max_jobs: u32,
-    /// Processors that the pool and its caller have; 0: as many as the system says.
+    /// Processors available to the pool and its caller; 0: as many as the system reports.
     pub processors: u32,
-    /// Threads of the engine's own that will call `work_once`. It only says how many bins are worth having.
+    /// Number of the engine's own threads that will call `work_once`. It only affects the number of bins.
     pub external_threads: u32,
-    /// What the names of the threads begin with; the number of the thread follows.
+    /// Prefix of the thread names; the thread's number is appended.
     pub thread_name: String,
-    /// Called by each thread when it starts, with its number from 0 on: for its priority, its affinity, or a profiler.
+    /// Called by each worker thread when it starts, with its number, counted from 0: to set its priority or affinity, or to
+    /// register it with a profiler.
     pub on_thread_start: Option<ThreadStart>,
 }
 
-/// Called by a thread of a pool when it starts.
+/// Called by a worker thread when it starts.
 pub type ThreadStart = Box<dyn Fn(u32) + Send + Sync>;
 
 impl Default for ThreadpoolSettings {

@@ -27,7 +27,7 @@ impl Glance {
     /// Waits until the count is another one, but only a moment.
     pub fn wait(&self, count: u64) {
         if cfg!(all(target_family = "wasm", target_os = "unknown")) {
-            // There is no clock, and asking for the time panics.
+            // There is no clock: reading the time panics.
             return;
         }
         let begin = Instant::now();
@@ -41,7 +41,8 @@ impl Glance {
     }
 }
 
-/// The number of a thread that is not the pool's, so that it finds the bins again that it drew in. Threads of pools count from 0 on.
+/// The number of a thread that is not the pool's, so that it returns to the bins it drew in before. Worker threads count from
+/// 0.
 pub(super) fn external_thread() -> usize {
     static THREADS: AtomicUsize = AtomicUsize::new(0);
     thread_local!(static NUMBER: usize = usize::MAX - THREADS.fetch_add(1, Relaxed));

@@ -114,7 +114,7 @@ impl Target {
         self.grid.count()
     }
 
-    /// Something is in flight from now on, or nothing any more.
+    /// The pool becomes busy, or idle again.
     pub fn turn(&self) {
         self.moc().attachment().turn();
     }

@@ -1,6 +1,6 @@
-//! How many threads a pool starts, and what happens when its scheduler breaks.
+//! How many threads a pool starts, and what happens when its scheduler panics.
 
-// There are no threads in WebAssembly, and no processes.
+// WebAssembly has no threads or processes.
 #![cfg(not(target_family = "wasm"))]
 
 use std::process::Command;
@@ -20,7 +20,7 @@ fn there_are_no_more_threads_than_processors_besides_the_callers_but_one_at_leas
     assert!(CullingThreadpool::with_processors(MAX_THREADS + 1, 4, 4, 32, 2).is_err());
 }
 
-/// Breaks the scheduler while slices are lent to it; in a process of its own.
+/// Makes the scheduler panic while slices are lent to it, in a separate process.
 fn break_it(who: &str) {
     let mut culling = MaskedOcclusionCulling::default();
     culling.set_resolution(640, 400).unwrap();
@@ -34,12 +34,12 @@ fn break_it(who: &str) {
             BREAKS.store(true, Relaxed);
             if who == "worker" {
                 pool.wake_threads();
-                // The thread is gone by then, or the flush below goes the same way.
+                // The process has aborted by then, or the flush below aborts it.
                 std::thread::sleep(Duration::from_millis(200));
             }
         });
     }));
-    // Neither: what was lent would be read later.
+    // Must not be reached: the lent slices would be read later.
     println!("came back, unwinding: {}", caught.is_err());
     std::process::exit(0);
 }
@@ -56,7 +56,7 @@ fn a_scheduler_that_panics_ends_the_process() {
         child.args([NAME, "--exact", "--nocapture"]).env("MOC_TEST_BREAKS", who);
         let output = child.output().unwrap();
         let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(!output.status.success(), "{who}: it came back");
+        assert!(!output.status.success(), "{who}: it returned");
         assert!(errors.contains("broken on purpose") && errors.contains("aborting"), "{who}: {errors}");
     }
 }

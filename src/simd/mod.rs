@@ -304,8 +304,8 @@ pub(crate) unsafe fn store_relaxed(p: *mut f32, x: f32) {
     unsafe { AtomicU32::from_ptr(p.cast()) }.store(x.to_bits(), Relaxed);
 }
 
-/// Address of record `index[3 * lane]` of four floats. With pointers of 32 bits the product may overflow: `p` is where
-/// record 0 would be, and may have wrapped around, too.
+/// Address of record `index[3 * lane]` of four floats. With 32-bit pointers the product may wrap around: `p` is where record 0
+/// would be, and may itself have wrapped.
 ///
 /// # Safety
 /// The index can be read.
@@ -316,8 +316,8 @@ unsafe fn record(p: *const f32, index: *const u32, lane: usize) -> *const f32 {
     p.wrapping_add((index as usize).wrapping_mul(4))
 }
 
-/// Address of the float `k` strides after `p`. Of vertices in several arrays the last may be more than `isize::MAX` bytes after
-/// the first where pointers have 32 bits.
+/// Address of the float `k` strides after `p`. With vertices in separate arrays and 32-bit pointers, the last may be more than
+/// `isize::MAX` bytes after the first.
 #[inline(always)]
 fn strided(p: *const u8, k: usize, stride: usize) -> *const f32 {
     p.wrapping_add(k.wrapping_mul(stride)).cast()

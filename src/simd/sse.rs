@@ -15,7 +15,7 @@ pub(super) struct Sse41(());
 /// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
 #[inline(never)]
 pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
-    // The target has SSE2: the token needs no more proof.
+    // The target has SSE2, so the token needs no further proof.
     job.run(Pair(Sse2(())))
 }
 
@@ -34,7 +34,7 @@ unsafe fn apart_sse41<J: Apart<Sse41>>(s: Sse41, job: J) -> J::Output {
     job.run(s)
 }
 
-/// The lanes as numbers, two at a time where registers have 64 bits.
+/// The lanes as integers, two at a time where registers have 64 bits.
 ///
 /// # Safety
 /// The processor has SSE2.

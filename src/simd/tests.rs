@@ -126,7 +126,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             let far: Vec<f32> = (0..4 * N).map(|x| x as f32).collect();
             results.push(floats(s.lookup_32(far.as_ptr(), s.and(i, s.i(31)))));
             results.push(floats(s.load_strided(far.as_ptr().cast::<u8>().add(8 * first), 8)));
-            // Backwards: products that wrap around.
+            // Negative stride: products that wrap around.
             let last = far.as_ptr().cast::<u8>().add(4 * (3 * N - first));
             results.push(floats(s.load_strided(last, 4_usize.wrapping_neg())));
             let triangles: Vec<u32> = (0..3 * N as u32).collect();

@@ -1,8 +1,8 @@
 //! WebAssembly's simd128: four lanes, used two by two. Masks are vectors of all ones or all zeros.
 //!
 //! A module that contains these instructions does not load where they are missing, so there is nothing to detect: they
-//! are used when the whole crate is compiled with `-C target-feature=+simd128`. Relaxed SIMD is not, because its
-//! results may differ from one machine to the next. The operations on values are safe functions here.
+//! are used when the whole crate is compiled with `-C target-feature=+simd128`. Relaxed SIMD is not used, because its results
+//! may differ between machines. The operations on values are safe functions here.
 
 use core::arch::wasm32::*;
 
@@ -15,11 +15,11 @@ pub(super) struct Simd128(());
 
 #[inline(never)]
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
-    // This file is compiled only where the whole module has simd128: the token needs no more proof.
+    // This file is compiled only if the whole module has simd128, so the token needs no further proof.
     job.run(Pair(Simd128(())))
 }
 
-/// The four words of two vectors that unpacking their low halves gives.
+/// Interleaves the low halves of two vectors.
 #[inline(always)]
 fn zip_low(a: v128, b: v128) -> v128 {
     i32x4_shuffle::<0, 4, 1, 5>(a, b)
@@ -193,7 +193,7 @@ impl Simd for Simd128 {
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: v128, x: v128) -> usize {
         let bits = self.mask_bits(m);
-        // SAFETY: four bits name an order of the table, which is sixteen bytes; the caller's contract.
+        // SAFETY: four bits select a permutation in the table, which is sixteen bytes; the caller's contract.
         unsafe {
             let order = v128_load(FOUR_LANES.as_ptr().add(bits as usize).cast());
             v128_store(p.cast(), i8x16_swizzle(x, order));
@@ -319,8 +319,8 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     fn ones_shl(self, count: v128) -> v128 {
-        // A shift takes one count for all lanes. Instead, byte `k` of a lane is looked up: 0xff shifted left by the
-        // count less `8 * k`, which is 0 from 8 on, in the table and (as swizzle has it) beyond its end.
+        // A shift takes one count for all lanes. Instead, byte `k` of a lane is looked up as 0xff shifted left by the count
+        // minus `8 * k`, which is 0 from 8 on: both in the table and, by the rules of swizzle, beyond its end.
         let table = u8x16(0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0);
         let count = i32x4_min(count, i32x4_splat(255));
         let count = i8x16_shuffle::<0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12>(count, count);

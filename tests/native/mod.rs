@@ -17,7 +17,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The shared library that C programs link: on Windows what lists its functions.
+/// The shared library that C programs link: on Windows, its import library.
 pub fn shared_library() -> PathBuf {
     library(Link::Shared).unwrap_or_else(|e| panic!("{e}"))
 }

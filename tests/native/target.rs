@@ -1,5 +1,5 @@
-//! What C and C++ programs are compiled for: the target of whoever asks, or another one whose libraries were built
-//! before (`.ci/windows`). Then the environment has
+//! The target for which C and C++ programs are compiled: the test's own, or another one whose libraries were built before
+//! (`.ci/windows`). In the latter case the environment has
 //!   MOC_TEST_TARGET      its triple
 //!   MOC_TEST_LIBRARIES   the folder of its libraries
 //!   MOC_TEST_RUNNER      what runs its programs here
@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// See [`target`].
 pub struct Target {
     pub triple: String,
-    /// Of another target: where its libraries are, and what runs its programs.
+    /// For another target: where its libraries are, and what runs its programs.
     other: Option<(PathBuf, String)>,
 }
 
@@ -49,7 +49,7 @@ impl Target {
         self.other.as_ref().map(|(folder, _)| folder.as_path())
     }
 
-    /// The compiler that the `cc` crate finds; `out` is a folder for its trials.
+    /// The compiler found by the `cc` crate; `out` is a scratch folder for it.
     pub fn compiler(&self, cpp: bool, out: &Path) -> cc::Build {
         let mut build = cc::Build::new();
         build.cpp(cpp).target(&self.triple).cargo_metadata(false).cargo_warnings(false).out_dir(out);
@@ -73,17 +73,17 @@ impl Target {
         if self.is_windows() { "exe" } else { "" }
     }
 
-    /// What a program that links `library` needs besides, for compilers with the options of gcc.
+    /// What else a program that links `library` needs, for compilers with gcc-style options.
     pub fn link(&self, command: &mut Command, library: &Path, shared: bool) {
         command.arg("-pthread").arg(library);
         if self.is_windows() {
-            // The compiler's own libraries are not on Windows, so they go into the program.
+            // Windows does not have the compiler's runtime libraries, so they are linked statically.
             command.arg("-static");
         } else if shared {
             command.arg(format!("-Wl,-rpath,{}", library.parent().unwrap_or(Path::new(".")).display()));
         }
         if !shared {
-            // What `rustc --print native-static-libs` names.
+            // The libraries listed by `rustc --print native-static-libs`.
             if self.is_windows() {
                 command.args(["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp"]);
             } else if self.is_linux() {
