@@ -131,7 +131,7 @@ static void null_pointers(void)
 
 static void wrong_integers(void)
 {
-    const int32_t wrong[] = {-2, 4, 15, 17, 32, 0x80, INT_MAX, INT_MIN};
+    const int32_t wrong[] = {-2, 4, 15, 18, 32, 0x80, INT_MAX, INT_MIN};
     MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER), *none;
     float quad[16], storage[9 * 4];
     uint32_t w = 1, h = 1;

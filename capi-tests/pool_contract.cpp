@@ -2,7 +2,7 @@
 // returns, how many arrays are in use, that awake threads draw without a further call, and that pool and object may be used
 // side by side.
 #include "check.h"
-#include "watchdog.h"
+#include "deadline.h"
 
 #include "CullingThreadpool.h"
 
@@ -429,7 +429,7 @@ void DirectUseOfABusyObject()
 
 int main()
 {
-    watchdog(300); // a call that hangs is a failure too
+    deadline(300);
     ClearThenQuery();
     ClearThenDraw();
     FlushThenFree();

@@ -1,7 +1,7 @@
 // Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, the engine's jobs do
 // the pool's work, and worker threads have names and run a callback when they start.
 #include "check.h"
-#include "watchdog.h"
+#include "deadline.h"
 
 #include "CullingThreadpool.h"
 
@@ -274,7 +274,7 @@ void Threads()
 
 int main()
 {
-    watchdog(300); // a call that hangs is a failure too
+    deadline(300);
     EachThreadItsMatrix();
     CallsWithTheirMatrix();
     WorkOfTheProgramsOwnThreads();

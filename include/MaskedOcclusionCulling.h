@@ -338,20 +338,14 @@ public:
     /** Afterwards this buffer hides what either hid, and never more. Another size or y direction is refused. */
     void MergeBuffer(MaskedOcclusionCulling *BufferB)
     {
-        Direct([&] {
-            MOC_Flush(BufferB);
-            return MOC_MergeBuffer(this, BufferB);
-        });
+        const MaskedOcclusionCulling *const other = BufferB;
+        Direct([&] { return MOC_MergeBuffer(this, other); }, &other, 1);
     }
 
     /** Folds several buffers into this one: the result of MergeBuffer one by one, but faster. */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
-        Direct([&] {
-            for (unsigned int i = 0; others != nullptr && i < count; i++)
-                MOC_Flush(others[i]);
-            return MOC_MergeBuffers(this, others, count);
-        });
+        Direct([&] { return MOC_MergeBuffers(this, others, count); }, others, count);
     }
 
     /**
@@ -533,11 +527,17 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
-    /* A call that changes or copies the buffer: repeated after a flush while a pool is drawing into it. */
-    template <class Call> void Direct(Call call) const
+    /* A call that changes or copies the buffer: waits first for what a pool has in flight for it. */
+    template <class Call>
+    void Direct(Call call, const MaskedOcclusionCulling *const *others = nullptr, unsigned int count = 0) const
     {
-        while (call() == MOC_STATUS_BUSY)
+        do
+        {
             MOC_Flush(this);
+            for (unsigned int i = 0; others != nullptr && i < count; i++)
+                if (others[i] != nullptr)
+                    MOC_Flush(others[i]);
+        } while (call() == MOC_STATUS_BUSY);
     }
 
     template <unsigned int Switches>

@@ -152,10 +152,8 @@ public:
 
     void MergeBuffer(MaskedOcclusionCulling *BufferB) override
     {
-        Direct([&] {
-            MOC_Flush(ObjectOf(BufferB));
-            return MOC_MergeBuffer(mObject, ObjectOf(BufferB));
-        });
+        const MOC_LinkedObject *const other = ObjectOf(BufferB);
+        Direct([&] { return MOC_MergeBuffer(mObject, other); }, other);
     }
 
     CullingResult RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
@@ -255,11 +253,15 @@ public:
     }
 
 private:
-    // A call that changes or copies the buffer: repeated after a flush while a pool is drawing into it.
-    template <class Call> void Direct(Call call) const
+    // A call that changes or copies the buffer: waits first for what a pool has in flight for it.
+    template <class Call> void Direct(Call call, const MOC_LinkedObject *other = nullptr) const
     {
-        while (call() == MOC_STATUS_BUSY)
+        do
+        {
             MOC_Flush(mObject);
+            if (other != nullptr)
+                MOC_Flush(other);
+        } while (call() == MOC_STATUS_BUSY);
     }
 
     MOC_LinkedObject *mObject;

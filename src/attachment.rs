@@ -16,8 +16,8 @@ pub(crate) trait Pool: Send + Sync {
     /// Waits until everything submitted is drawn.
     fn flush(&self);
 
-    /// Flushes, then detaches its object.
-    fn forget(&self);
+    /// Flushes, then detaches the object with this attachment.
+    fn forget(&self, attachment: &Attachment);
 
     /// Tests a rectangle against what has been drawn so far.
     fn test_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error>;
@@ -52,7 +52,8 @@ impl Attachment {
 
     /// The answer to a query of the buffer, unless the pool had work in flight meanwhile.
     ///
-    /// What a query reads while a pool draws is only compared, never used as an address, and its answer is discarded here.
+    /// A draw that begins meanwhile writes what the query reads: a race, as in any seqlock whose data is not atomic. The data
+    /// read is only compared, never used as an address, and the answer is discarded here.
     #[inline(always)]
     pub fn undisturbed<R>(&self, ask: impl FnOnce() -> R) -> Option<R> {
         let before = self.turns.load(Ordering::Acquire);
@@ -68,7 +69,7 @@ impl Attachment {
     /// The pool becomes busy, or idle again. Calls alternate between the two, under the pool's lock.
     pub fn turn(&self) {
         self.turns.fetch_add(1, Ordering::AcqRel);
-        // The count is written before the buffer.
+        // The count is written before the buffer: other threads write that after taking the lock under which this is called.
         fence(Ordering::Release);
     }
 
@@ -106,7 +107,7 @@ impl Attachment {
     /// The object is going away: its pool draws what was submitted and no longer has an object.
     pub fn leave(&self) {
         if let Some(pool) = self.pool() {
-            pool.forget();
+            pool.forget(self);
             self.detach();
         }
     }

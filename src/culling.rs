@@ -258,13 +258,15 @@ impl MaskedOcclusionCulling {
     ) -> Result<CullingResult, Error> {
         let mesh = Mesh { vertices, triangles, options };
         // SAFETY: the caller's contract.
-        let Some(result) = self.attachment.undisturbed(|| unsafe { self.ask_triangles(&mesh) }) else {
+        let Some(found) = self.attachment.undisturbed(|| unsafe { self.look_at_triangles(&mesh) }) else {
             // SAFETY: the caller's contract.
             return unsafe { self.pool_triangles(&mesh) };
         };
+        let (result, tally) = found?;
+        self.counters.add_query(self.statistics, 0, &tally);
         // SAFETY: the caller's contract.
-        unsafe { self.recorder.test_triangles(Some(result?), &mesh) };
-        result
+        unsafe { self.recorder.test_triangles(Some(result), &mesh) };
+        Ok(result)
     }
 
     /// The same through the pool that draws into the object.
@@ -287,11 +289,20 @@ impl MaskedOcclusionCulling {
     /// # Safety
     /// As there.
     pub(crate) unsafe fn ask_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
-        let camera = self.camera(mesh.options)?;
-        // SAFETY: the caller's contract for the vertices.
-        let (result, tally) = unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, mesh) };
+        // SAFETY: the caller's contract.
+        let (result, tally) = unsafe { self.look_at_triangles(mesh) }?;
         self.counters.add_query(self.statistics, 0, &tally);
         Ok(result)
+    }
+
+    /// The same without counting; also returns what to count.
+    ///
+    /// # Safety
+    /// As there.
+    unsafe fn look_at_triangles(&self, mesh: &Mesh<'_>) -> Result<(CullingResult, Tally), Error> {
+        let camera = self.camera(mesh.options)?;
+        // SAFETY: the caller's contract for the vertices.
+        Ok(unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, mesh) })
     }
 
     /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose
@@ -315,8 +326,8 @@ impl MaskedOcclusionCulling {
         if self.recorder.is_on() {
             return self.recorded_rect((x_min, y_min), (x_max, y_max), w_min);
         }
-        match self.attachment.undisturbed(|| self.ask_rect([x_min, y_min, x_max, y_max], w_min)) {
-            Some(result) => result,
+        match self.attachment.undisturbed(|| self.look_at_rect([x_min, y_min, x_max, y_max], w_min)) {
+            Some(found) => Ok(self.count_rect(found?)),
             None => self.pool_rect((x_min, y_min), (x_max, y_max), w_min),
         }
     }
@@ -325,11 +336,12 @@ impl MaskedOcclusionCulling {
     #[cold]
     fn recorded_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
         let edges = [min.0, min.1, max.0, max.1];
-        let Some(result) = self.attachment.undisturbed(|| self.ask_rect(edges, w_min)) else {
+        let Some(found) = self.attachment.undisturbed(|| self.look_at_rect(edges, w_min)) else {
             return self.pool_rect(min, max, w_min);
         };
-        self.recorder.test_rect(Some(result?), edges, w_min);
-        result
+        let result = self.count_rect(found?);
+        self.recorder.test_rect(Some(result), edges, w_min);
+        Ok(result)
     }
 
     /// Through the pool that draws into the object.
@@ -345,10 +357,19 @@ impl MaskedOcclusionCulling {
     /// The same, not recorded.
     #[inline(always)]
     pub(crate) fn ask_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
-        let buffer = self.buffer()?;
-        let (result, traversed) = rectangle::test(self.implementation, buffer, self.y_axis, edges, w_min);
+        Ok(self.count_rect(self.look_at_rect(edges, w_min)?))
+    }
+
+    /// The same without counting; also returns what to count.
+    #[inline(always)]
+    fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> Result<(CullingResult, u64), Error> {
+        Ok(rectangle::test(self.implementation, self.buffer()?, self.y_axis, edges, w_min))
+    }
+
+    #[inline(always)]
+    fn count_rect(&self, (result, traversed): (CullingResult, u64)) -> CullingResult {
         self.counters.add_query(self.statistics, 1, &Tally { traversed, ..Tally::default() });
-        Ok(result)
+        result
     }
 
     /// The tiles that a rectangle touches; at least one.

@@ -74,7 +74,7 @@ fn a_switch_over_the_four_instruction_sets_of_intel_moc() {
 #[test]
 fn a_switch_over_all_instruction_sets() {
     let all = "case Moc::SSE2: case Moc::SSE41: case Moc::AVX2: case Moc::AVX512: return 1;
-        case Moc::SCALAR: return 2; case Moc::NEON: return 3;";
+        case Moc::SCALAR: return 2; case Moc::NEON: return 3; case Moc::SIMD128: return 4;";
     compiles(&SWITCH.replace("CASES", all));
 }
 

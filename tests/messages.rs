@@ -57,7 +57,17 @@ fn call_all() {
         MOC_RecordingFromMemory(null(), 1, null_mut());
         MOC_RecordingGetInfo(null(), null_mut());
         MOC_RecordingGetCall(null(), 0, null_mut());
+        MOC_Flush(null());
         MOC_ThreadpoolCreate(0, 1, 1, 1, 0, null_mut());
+        MOC_ThreadpoolCreateFrom(null(), null_mut());
+        MOC_ThreadpoolWorkOnce(null(), null_mut());
+        MOC_ThreadpoolIsDone(null(), null_mut());
+        MOC_ThreadpoolGetThreads(null(), null_mut());
+        MOC_ThreadpoolGetBins(null(), null_mut(), null_mut());
+        MOC_ThreadpoolRenderMesh(null(), null(), null(), 1, null(), 1, 0x1f, null());
+        MOC_ThreadpoolRenderMeshChecked(null(), null(), 1, null(), 1, null(), 1, 0x1f, null());
+        MOC_ThreadpoolTestMesh(null(), null(), null(), 1, null(), 1, 0x1f, null(), null_mut());
+        MOC_ThreadpoolTestMeshChecked(null(), null(), 1, null(), 1, null(), 1, 0x1f, null(), null_mut());
         MOC_ThreadpoolWakeThreads(null());
         MOC_ThreadpoolSuspendThreads(null());
         MOC_ThreadpoolFlush(null());

@@ -181,14 +181,14 @@ fn clear(crew: &Crew, target: &Target) {
 }
 
 /// Plays what a program does in every order, with this many threads, bins and batches.
-fn explore(threads: usize, bins: usize, max_batches: usize, program: fn(&Crew, &Target), expected: &'static [u32]) {
+fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Crew, &Target), expected: &'static [u32]) {
     let mut model = loom::model::Builder::new();
     model.preemption_bound = Some(2);
     model.max_branches = 50_000;
     // A bound for slow machines; what is left out then was not reached, and nothing else changes.
     model.max_duration = Some(std::time::Duration::from_secs(15));
     model.check(move || {
-        let crew = Arc::new(Crew::new(max_batches));
+        let crew = Arc::new(Crew::new(max_jobs));
         let target = Arc::new(Target::new(bins));
         crew.set_target(Some(target.clone()));
         let workers: Vec<_> = (0..threads)

@@ -35,7 +35,7 @@ export class Culling {
         this.matrix = this.arena.allocate(64);
         this.out = this.arena.allocate(8);
         this.pixels = [width, height];
-        const settings = this.arena.allocate(28);
+        const settings = this.arena.allocate(32);
         this.check(this.moc.MOC_DefaultSettings(settings));
         new Int32Array(this.memory.buffer, settings, 1)[0] = implementation;
         this.check(this.moc.MOC_Create(settings, this.out));

@@ -1,7 +1,7 @@
 //! What changes the buffer: clearing, merging, drawing triangles and lists.
 
 use super::mesh::MeshArguments;
-use super::pointers::{check_length, object, object_mut, objects, read};
+use super::pointers::{check_length, idle_object_mut, object, objects, read};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
@@ -12,21 +12,22 @@ const EMPTY: &str = "one of the objects has no buffer: call MOC_SetResolution fi
 
 /// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
 #[unsafe(export_name = symbol!(MOC_ClearBuffer))]
 pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { object_mut(moc) }?.clear_buffer()?))
+    guard(|| Ok(unsafe { idle_object_mut(moc) }?.clear_buffer()?))
 }
 
 /// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
 /// into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
 /// differ in instruction set and update rule. Merging an object with itself changes nothing.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
+/// either.
 ///
 /// # Safety
 /// Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
@@ -42,7 +43,7 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
             return Ok(unsafe { object(other) }?.resolution().map(|_| ()).ok_or(Error::NoBuffer)?);
         }
         // SAFETY: the caller's contract, and the two are not the same.
-        let moc = unsafe { object_mut(moc) }?;
+        let moc = unsafe { idle_object_mut(moc) }?;
         // SAFETY: as above.
         let other = unsafe { object(other) }.because(Error::NullPointer, "the other object is null")?;
         moc.merge_buffer(other).because(Error::NoBuffer, EMPTY)
@@ -68,7 +69,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
         let mut others = unsafe { objects(others, count) }?;
         others.retain(|&other| !core::ptr::eq(other, moc));
         // SAFETY: the caller's contract, and none of the others is the same.
-        unsafe { object_mut(moc) }?.merge_buffers(&others).because(Error::NoBuffer, EMPTY)
+        unsafe { idle_object_mut(moc) }?.merge_buffers(&others).because(Error::NoBuffer, EMPTY)
     })
 }
 
@@ -91,7 +92,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
 /// or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
-/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER.
+/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -164,7 +165,7 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
 /// As MOC_RenderTriangles, and [`MeshArguments::check`].
 unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments) -> Result<CullingResult, Refusal> {
     // SAFETY: the caller's contract.
-    let moc = unsafe { object_mut(moc) }?;
+    let moc = unsafe { idle_object_mut(moc) }?;
     // SAFETY: the caller's contract.
     let mesh = unsafe { mesh.check(moc) }?;
     // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
@@ -179,6 +180,7 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments) -> Resul
 /// object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
+/// MOC_STATUS_BUSY while a pool is drawing into the object,
 /// MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
 /// its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
 ///

@@ -2,9 +2,9 @@
 
 use std::alloc::Layout;
 
-use super::pointers::{check_out, object, object_mut, read, write, write_size};
+use super::pointers::{check_out, idle_object_mut, object, read, write, write_size};
 use super::refusal::{Because, Refusal};
-use super::status::{MOC_Status, guard};
+use super::status::{MOC_Status, done, guard};
 use super::types::{self, MOC_Implementation, MOC_Settings, MOC_UpdateRule, MOC_YAxis};
 use crate::{Allocator, Error, MaskedOcclusionCulling, Settings};
 
@@ -102,6 +102,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
         // SAFETY: the caller's contract: a live object that nobody else uses. `MOC_Create` took its memory
         // from the same allocator with the same layout.
         unsafe {
+            // First, before there is a `&mut`: the pool may draw until this returns.
             place.as_ref().attachment().leave();
             let allocator = place.as_ref().allocator();
             place.drop_in_place();
@@ -120,7 +121,8 @@ pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 /// It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
 /// centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY. The object keeps
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is drawing into
+/// the object. The object keeps
 /// the buffer that it had.
 ///
 /// # Safety
@@ -128,7 +130,7 @@ pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 #[unsafe(export_name = symbol!(MOC_SetResolution))]
 pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, width: u32, height: u32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object_mut(moc) }?.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION))
+    guard(|| unsafe { idle_object_mut(moc) }?.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION))
 }
 
 /// Writes the width and height of the buffer in pixels.
@@ -193,7 +195,7 @@ pub(super) const NEAR: &str = "the near plane is NaN or infinite";
 #[unsafe(export_name = symbol!(MOC_SetNearClipPlane))]
 pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, near_w: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object_mut(moc) }?.set_near_clip_plane(near_w).because(Error::InvalidNumber, NEAR))
+    guard(|| unsafe { object(moc) }?.set_near_shared(near_w).because(Error::InvalidNumber, NEAR))
 }
 
 /// Writes the near plane, in clip-space w.
@@ -257,6 +259,11 @@ unsafe fn get<T: Copy>(
 /// `moc` is null or from MOC_Create and not destroyed.
 #[unsafe(export_name = symbol!(MOC_Flush))]
 pub unsafe extern "C" fn MOC_Flush(moc: *const MaskedOcclusionCulling) -> MOC_Status {
+    // The C++ class calls this before each direct draw.
+    // SAFETY: the caller's contract.
+    if unsafe { moc.as_ref() }.is_some_and(|moc| !moc.attachment().is_busy()) {
+        return done();
+    }
     guard(|| {
         // SAFETY: the caller's contract.
         unsafe { object(moc) }?.flush();

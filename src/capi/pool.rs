@@ -80,9 +80,6 @@ impl MOC_ThreadpoolSettings {
     /// # Safety
     /// `thread_name` is null or a C string; `thread_start` may be called by any thread.
     unsafe fn to_rust(self) -> Result<ThreadpoolSettings, Refusal> {
-        if (self.size as usize) < size_of::<Self>() {
-            return Err(Refusal::new(Error::InvalidSize, "size is not sizeof(MOC_ThreadpoolSettings)"));
-        }
         if self.reserved != 0 {
             return Err(Refusal::new(Error::InvalidEnum, "reserved is not 0"));
         }
@@ -146,7 +143,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 ) -> MOC_Status {
     let settings = || Ok(ThreadpoolSettings { threads, bins_w, bins_h, max_jobs, processors, ..Default::default() });
     // SAFETY: the caller's contract.
-    unsafe { create(settings, out) }
+    guard(|| unsafe { create(settings, out) })
 }
 
 /// MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names, and a
@@ -156,21 +153,25 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 /// too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
 ///
 /// # Safety
-/// `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
-/// `user` by any thread. `out` is null or can be written.
+/// `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C string, and
+/// its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolCreateFrom))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
     settings: *const MOC_ThreadpoolSettings,
     out: *mut *mut MOC_Threadpool,
 ) -> MOC_Status {
     let settings = || {
-        // SAFETY: the caller's contract.
-        let settings = unsafe { read(settings) }.ok_or(Refusal::new(Error::NullPointer, "settings is null"))?;
-        // SAFETY: the caller's contract.
-        unsafe { settings.to_rust() }
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        let size =
+            unsafe { read(settings.cast::<u32>()) }.ok_or(Refusal::new(Error::NullPointer, "settings is null"))?;
+        if (size as usize) < size_of::<MOC_ThreadpoolSettings>() {
+            return Err(Refusal::new(Error::InvalidSize, "size is less than sizeof(MOC_ThreadpoolSettings)"));
+        }
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
+        unsafe { read(settings).map_or(Ok(ThreadpoolSettings::default()), |settings| settings.to_rust()) }
     };
     // SAFETY: the caller's contract.
-    unsafe { create(settings, out) }
+    guard(|| unsafe { create(settings, out) })
 }
 
 /// # Safety
@@ -178,17 +179,15 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
 unsafe fn create(
     settings: impl FnOnce() -> Result<ThreadpoolSettings, Refusal>,
     out: *mut *mut MOC_Threadpool,
-) -> MOC_Status {
-    guard(|| {
-        check_out(out)?;
-        // SAFETY: not null, and the caller's contract.
-        unsafe { write(out, core::ptr::null_mut()) };
-        let pool = MOC_Threadpool::new(settings()?)
-            .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads is above 1024")?;
-        // SAFETY: as above.
-        unsafe { write(out, pool) };
-        Ok(())
-    })
+) -> Result<(), Refusal> {
+    check_out(out)?;
+    // SAFETY: not null, and the caller's contract.
+    unsafe { write(out, core::ptr::null_mut()) };
+    let pool = MOC_Threadpool::new(settings()?)
+        .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads is above 1024")?;
+    // SAFETY: as above.
+    unsafe { write(out, pool) };
+    Ok(())
 }
 
 /// Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
@@ -329,9 +328,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 
 /// Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
 ///
-/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it at any time, on any
-/// thread, even while the pool draws: they answer from what has been drawn so far. Calls that would change or copy its buffer
-/// while work is in flight are refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
+/// while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
+/// been drawn so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY);
+/// MOC_Flush waits for the pool.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
 ///
@@ -357,7 +357,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
 /// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads.
+/// As MOC_ThreadpoolWakeThreads. Meanwhile no thread queries the object other than through the pool.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetResolution))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     pool: *const MOC_Threadpool,

@@ -4,7 +4,6 @@ use super::mesh::{CheckedMesh, MeshArguments};
 use super::messages::note;
 use super::pointers::{check_out, objects, read, slice_mut};
 use super::pool::{EMPTY, MOC_Threadpool, handle};
-use super::pool_state::State;
 use super::query::odd_rectangle;
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
@@ -17,33 +16,6 @@ impl MOC_Threadpool {
     unsafe fn check<'a>(&self, arguments: MeshArguments) -> Result<CheckedMesh<'a>, Refusal> {
         // SAFETY: the caller's contract.
         self.pool.with_object(|moc| Ok(unsafe { arguments.check(moc) })).because(Error::NoBuffer, EMPTY)?
-    }
-
-    /// A mesh with the calling thread's matrix and layout, checked.
-    ///
-    /// # Safety
-    /// As [`MeshArguments::check`].
-    unsafe fn with_state<'a>(
-        &self,
-        vertices: *const f32,
-        triangles: *const u32,
-        n_triangles: i32,
-        winding: i32,
-        clip_planes: i32,
-    ) -> Result<CheckedMesh<'a>, Refusal> {
-        let State { matrix, layout } = self.state.get();
-        let arguments = MeshArguments {
-            vertices,
-            vertex_floats: None,
-            triangles,
-            n_triangles,
-            model_to_clip: matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
-            winding,
-            clip_planes,
-            layout: &raw const layout,
-        };
-        // SAFETY: the caller's contract; the other two point to locals.
-        unsafe { self.check(arguments) }
     }
 
     /// # Safety
@@ -140,10 +112,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     guard(|| {
         // SAFETY: the caller's contract.
         let handle = unsafe { handle(pool) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
-        // SAFETY: the caller's contract.
-        Ok(unsafe { handle.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
+        let state = handle.state.get();
+        // SAFETY: the caller's contract, and a local.
+        unsafe { handle.render(state.mesh(vertices, triangles, n_triangles, winding, clip_planes)) }
     })
 }
 
@@ -329,10 +300,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     let query = || {
         // SAFETY: the caller's contract.
         let handle = unsafe { handle(pool) }?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { handle.with_state(vertices, triangles, n_triangles, winding, clip_planes) }?;
-        // SAFETY: the caller's contract.
-        Ok(unsafe { handle.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
+        let state = handle.state.get();
+        // SAFETY: the caller's contract, and a local.
+        unsafe { handle.test(state.mesh(vertices, triangles, n_triangles, winding, clip_planes)) }
     };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, query) }
@@ -370,7 +340,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
-/// until MOC_ThreadpoolFlush.
+/// until a flushing call returns.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolMergeBuffers))]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     pool: *const MOC_Threadpool,

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
+use super::mesh::MeshArguments;
 use super::types::MOC_VertexLayout;
 use crate::VertexLayout;
 
@@ -11,6 +12,29 @@ use crate::VertexLayout;
 pub(super) struct State {
     pub matrix: Option<[f32; 16]>,
     pub layout: MOC_VertexLayout,
+}
+
+impl State {
+    /// A mesh with this matrix and layout, to which it points.
+    pub fn mesh(
+        &self,
+        vertices: *const f32,
+        triangles: *const u32,
+        n_triangles: i32,
+        winding: i32,
+        clip_planes: i32,
+    ) -> MeshArguments {
+        MeshArguments {
+            vertices,
+            vertex_floats: None,
+            triangles,
+            n_triangles,
+            model_to_clip: self.matrix.as_ref().map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
+            winding,
+            clip_planes,
+            layout: &raw const self.layout,
+        }
+    }
 }
 
 /// What was set on a pool.

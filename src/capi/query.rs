@@ -22,7 +22,8 @@ use crate::{CullingResult, Error, MaskedOcclusionCulling};
 /// or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
 /// near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
 ///
-/// Errors: as MOC_RenderTriangles.
+/// Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes through the
+/// pool.
 ///
 /// # Safety
 /// As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
@@ -179,7 +180,8 @@ pub(super) fn odd_rectangle([xmin, ymin, xmax, ymax, wmin]: [f32; 5]) -> Option<
 /// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
 /// depths are those that tests compare with, never nearer than what was drawn.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object,
+/// MOC_STATUS_INVALID_ENUM for another `flip_y`,
 /// MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
 ///
 /// # Safety

@@ -90,7 +90,10 @@ pub struct MOC_RecordedCall {
 #[unsafe(export_name = symbol!(MOC_RecorderStart))]
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { Ok(object(moc)?.recorder_start(self::path(path)?).map_err(Error::from)?) })
+    let start = || -> Result<(), Refusal> {
+        unsafe { Ok(object(moc)?.recorder_start(self::path(path)?).map_err(Error::from)?) }
+    };
+    guard(|| start().because(Error::Busy, "a recording is under way already"))
 }
 
 /// Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.

@@ -109,6 +109,13 @@ pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
     text.map_or(c"not a status of this library", |t| t).as_ptr()
 }
 
+/// Records success; called directly by functions that have nothing to do.
+#[inline]
+pub(super) fn done() -> MOC_Status {
+    messages::done();
+    MOC_Status::MOC_STATUS_OK
+}
+
 /// Runs the body of an exported function; a panic becomes a status. The closure must be written inside that function: messages
 /// take the function's name from it.
 pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
@@ -151,10 +158,7 @@ pub(super) unsafe fn guard_result_as_set<F: FnOnce() -> Result<CullingResult, Re
 #[inline]
 fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -> MOC_Status {
     match catch_unwind(AssertUnwindSafe(body)) {
-        Ok(Ok(())) => {
-            messages::done();
-            MOC_Status::MOC_STATUS_OK
-        }
+        Ok(Ok(())) => done(),
         Ok(Err(refusal)) => messages::refused(name(), refusal),
         Err(payload) => {
             // Dropping the panic's payload could panic again.

@@ -70,8 +70,8 @@ impl State {
 }
 
 impl Crew {
-    pub fn new(max_batches: usize) -> Self {
-        let schedule = Schedule::new(1, max_batches);
+    pub fn new(max_jobs: usize) -> Self {
+        let schedule = Schedule::new(1, max_jobs);
         let state = State {
             schedule,
             target: None,
@@ -227,7 +227,7 @@ impl Crew {
         if let Some(task) = state.schedule.claim(external_thread()) {
             return self.perform(state, task);
         }
-        // Workers, who wait between frames, too, sleep at once; here the last of a frame is waited for.
+        // The last task of a frame takes less time than sleeping and waking.
         let count = self.finished.count();
         drop(state);
         self.finished.wait(count);
@@ -327,9 +327,11 @@ impl Crew {
 
     /// Draws into another target from now on. Nothing is in flight, and the caller keeps others from submitting.
     pub fn set_target(&self, target: Option<Arc<Target>>) {
-        let mut state = self.lock();
-        state.schedule.set_bins(target.as_ref().map_or(1, |target| target.bins()));
-        state.target = target;
+        abort_on_panic(|| {
+            let mut state = self.lock();
+            state.schedule.set_bins(target.as_ref().map_or(1, |target| target.bins()));
+            state.target = target;
+        });
     }
 
     pub fn set_suspended(&self, suspended: bool) {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, Rw
 
 use super::crew::Crew;
 use super::target::{Bins, Target};
-use crate::attachment::Pool;
+use crate::attachment::{Attachment, Pool};
 use crate::pipeline::Mesh;
 use crate::{CullingResult, Error, MaskedOcclusionCulling};
 
@@ -147,8 +147,11 @@ impl Pool for Gate {
         self.crew.flush();
     }
 
-    fn forget(&self) {
+    fn forget(&self, attachment: &Attachment) {
         let mut gate = self.shut();
+        if !gate.as_ref().is_some_and(|target| core::ptr::eq(target.moc().attachment(), attachment)) {
+            return;
+        }
         self.crew.flush();
         self.crew.set_target(None);
         *gate = None;
