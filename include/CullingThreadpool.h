@@ -22,9 +22,9 @@
  * WakeThreads, Flush, SuspendThreads or WorkOnce. The threads sleep when there is nothing to do, between SuspendThreads and
  * WakeThreads, and before the first WakeThreads.
  *
- * Any thread may query the pool's object directly, but not while SetBuffer or SetResolution runs. It may be drawn into directly
- * while no thread calls the pool: its methods first wait for work in flight. Pool and object may be destroyed in either order;
- * whichever goes first, what was submitted is drawn before, so the arrays must still exist.
+ * The object that the pool draws into may be queried directly by any thread, except while SetBuffer or SetResolution runs. It
+ * may be drawn into directly while no thread calls the pool: its methods first wait for work in flight. Pool and object may be
+ * destroyed in either order; whichever goes first, what was submitted is drawn before, so the arrays must still exist.
  *
  * Several threads may call everything but the destructor concurrently. SetMatrix and SetVertexLayout apply to later calls on
  * the same thread; a thread that has never called either uses what any thread set last. The overloads with a matrix need
@@ -143,7 +143,7 @@ public:
      */
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
-    /** SetResolution of the object, after what was submitted is drawn. Meanwhile nobody queries the object itself. */
+    /** SetResolution of the object, after what was submitted is drawn. No thread may query the object itself meanwhile. */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {
         MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;

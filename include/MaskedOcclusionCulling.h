@@ -527,7 +527,7 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
-    /* A call that changes or copies the buffer, once a pool has drawn what it has in flight for it. */
+    /* A call that changes or copies the buffer: waits first for what a pool has in flight for it. */
     template <class Call>
     void Direct(Call call, const MaskedOcclusionCulling *const *others = nullptr, unsigned int count = 0) const
     {

@@ -34,7 +34,7 @@
  *
  * Order of calls. Once: MOC_DefaultSettings, MOC_Create, MOC_SetResolution, MOC_SetNearClipPlane. Each frame:
  * MOC_ClearBuffer, then draws and tests, in any order and as often as wanted. A test answers from what is drawn
- * by then, so draw first what is near and large. At the end: pools first (MOC_ThreadpoolDestroy), then MOC_Destroy.
+ * by then, so draw first what is near and large. At the end: MOC_ThreadpoolDestroy and MOC_Destroy.
  *
  * Units
  *   clip space   (x, y, w): x right, y up, w away from the eye and positive in view. z is not looked at. On the
@@ -884,7 +884,8 @@ MOC_Status MOC_Destroy(MaskedOcclusionCulling *moc);
  * It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
  * centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY. The object keeps
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is drawing into
+ * the object. The object keeps
  * the buffer that it had.
  *
  * Required:
@@ -996,7 +997,7 @@ MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
 /**
  * Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
@@ -1008,7 +1009,8 @@ MOC_Status MOC_ClearBuffer(MaskedOcclusionCulling *moc);
  * into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
  * differ in instruction set and update rule. Merging an object with itself changes nothing.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
+ * either.
  *
  * Required:
  * Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
@@ -1051,7 +1053,7 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
  * or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
- * are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER.
+ * are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -1100,6 +1102,7 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
  * object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
  *
  * Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
+ * MOC_STATUS_BUSY while a pool is drawing into the object,
  * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
  * its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
  *
@@ -1126,7 +1129,8 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
  * or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
  * near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
  *
- * Errors: as MOC_RenderTriangles.
+ * Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes through the
+ * pool.
  *
  * Required:
  * As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
@@ -1195,7 +1199,8 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
  * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
  * depths are those that tests compare with, never nearer than what was drawn.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_INVALID_ENUM for another `flip_y`,
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object,
+ * MOC_STATUS_INVALID_ENUM for another `flip_y`,
  * MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
  *
  * Required:
@@ -1358,8 +1363,8 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
  * too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
  *
  * Required:
- * `settings` is null or can be read, its `thread_name` is null or a C string, and its `thread_start` may be called with its
- * `user` by any thread. `out` is null or can be written.
+ * `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C string, and
+ * its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
  */
 MOC_Status MOC_ThreadpoolCreateFrom(const struct MOC_ThreadpoolSettings *settings,
                                     struct MOC_Threadpool **out);
@@ -1455,9 +1460,10 @@ MOC_Status MOC_ThreadpoolGetBins(const struct MOC_Threadpool *pool, uint32_t *bi
 /**
  * Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
  *
- * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it at any time, on any
- * thread, even while the pool draws: they answer from what has been drawn so far. Calls that would change or copy its buffer
- * while work is in flight are refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
+ * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
+ * while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
+ * been drawn so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY);
+ * MOC_Flush waits for the pool.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
  *
@@ -1474,7 +1480,7 @@ MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
  * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads.
+ * As MOC_ThreadpoolWakeThreads. Meanwhile no thread queries the object other than through the pool.
  */
 MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32_t width, uint32_t height);
 
@@ -1668,7 +1674,7 @@ MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *po
  *
  * Required:
  * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
- * until MOC_ThreadpoolFlush.
+ * until a flushing call returns.
  */
 MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
                                       const MaskedOcclusionCulling *const *others,

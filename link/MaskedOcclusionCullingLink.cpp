@@ -253,7 +253,7 @@ public:
     }
 
 private:
-    // A call that changes or copies the buffer, once a pool has drawn what it has in flight for it.
+    // A call that changes or copies the buffer: waits first for what a pool has in flight for it.
     template <class Call> void Direct(Call call, const MOC_LinkedObject *other = nullptr) const
     {
         do

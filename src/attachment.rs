@@ -16,7 +16,7 @@ pub(crate) trait Pool: Send + Sync {
     /// Waits until everything submitted is drawn.
     fn flush(&self);
 
-    /// Flushes, then forgets the object that this is the attachment of.
+    /// Flushes, then detaches the object with this attachment.
     fn forget(&self, attachment: &Attachment);
 
     /// Tests a rectangle against what has been drawn so far.
@@ -52,8 +52,8 @@ impl Attachment {
 
     /// The answer to a query of the buffer, unless the pool had work in flight meanwhile.
     ///
-    /// A draw that begins meanwhile writes what the query reads: a race, as in any seqlock whose data is not atomic. What is read is only
-    /// compared, never used as an address, and the answer is discarded here.
+    /// A draw that begins meanwhile writes what the query reads: a race, as in any seqlock whose data is not atomic. The data
+    /// read is only compared, never used as an address, and the answer is discarded here.
     #[inline(always)]
     pub fn undisturbed<R>(&self, ask: impl FnOnce() -> R) -> Option<R> {
         let before = self.turns.load(Ordering::Acquire);
@@ -69,7 +69,7 @@ impl Attachment {
     /// The pool becomes busy, or idle again. Calls alternate between the two, under the pool's lock.
     pub fn turn(&self) {
         self.turns.fetch_add(1, Ordering::AcqRel);
-        // The count is written before the buffer, which other threads write after they took the lock under which this is called.
+        // The count is written before the buffer: other threads write that after taking the lock under which this is called.
         fence(Ordering::Release);
     }
 

@@ -295,7 +295,7 @@ impl MaskedOcclusionCulling {
         Ok(result)
     }
 
-    /// The same, not counted, with what there is to count.
+    /// The same without counting; also returns what to count.
     ///
     /// # Safety
     /// As there.
@@ -360,7 +360,7 @@ impl MaskedOcclusionCulling {
         Ok(self.count_rect(self.look_at_rect(edges, w_min)?))
     }
 
-    /// The same, not counted, with what there is to count.
+    /// The same without counting; also returns what to count.
     #[inline(always)]
     fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> Result<(CullingResult, u64), Error> {
         Ok(rectangle::test(self.implementation, self.buffer()?, self.y_axis, edges, w_min))

@@ -92,8 +92,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
 /// or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
-/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into
-/// the object.
+/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the

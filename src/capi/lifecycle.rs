@@ -102,7 +102,7 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
         // SAFETY: the caller's contract: a live object that nobody else uses. `MOC_Create` took its memory
         // from the same allocator with the same layout.
         unsafe {
-            // First, while there is no `&mut`: the pool may draw until it is back.
+            // First, before there is a `&mut`: the pool may draw until this returns.
             place.as_ref().attachment().leave();
             let allocator = place.as_ref().allocator();
             place.drop_in_place();
@@ -259,7 +259,7 @@ unsafe fn get<T: Copy>(
 /// `moc` is null or from MOC_Create and not destroyed.
 #[unsafe(export_name = symbol!(MOC_Flush))]
 pub unsafe extern "C" fn MOC_Flush(moc: *const MaskedOcclusionCulling) -> MOC_Status {
-    // The C++ class asks before each direct draw.
+    // The C++ class calls this before each direct draw.
     // SAFETY: the caller's contract.
     if unsafe { moc.as_ref() }.is_some_and(|moc| !moc.attachment().is_busy()) {
         return done();

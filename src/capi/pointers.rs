@@ -21,14 +21,15 @@ pub(super) unsafe fn object_mut<'a>(
     unsafe { moc.as_mut() }.ok_or(NO_OBJECT)
 }
 
-/// The same for what changes the object, unless its pool is drawing into it: then other threads look at it.
+/// The same for calls that change the object; refused while its pool is drawing into it, since other threads then read it.
 ///
 /// # Safety
-/// Null or from `MOC_Create` and not destroyed; nobody else uses the object meanwhile but a pool that is drawing into it.
+/// Null or from `MOC_Create` and not destroyed; nothing else uses the object meanwhile, except a pool that is drawing into it.
 pub(super) unsafe fn idle_object_mut<'a>(
     moc: *mut MaskedOcclusionCulling,
 ) -> Result<&'a mut MaskedOcclusionCulling, Refusal> {
-    // SAFETY: the caller's contract. With nothing in flight the pool's threads do not look at it, so `&mut` is the only reference.
+    // SAFETY: the caller's contract. With nothing in flight the pool's threads do not access it, so `&mut` is the only
+    // reference.
     unsafe {
         object(moc)?.attachment().check_idle()?;
         object_mut(moc)

@@ -153,21 +153,21 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
 /// too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
 ///
 /// # Safety
-/// `settings` is null or can be read for as many bytes as its `size` says, its `thread_name` is null or a C string, and its `thread_start` may be called with its
-/// `user` by any thread. `out` is null or can be written.
+/// `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C string, and
+/// its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolCreateFrom))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
     settings: *const MOC_ThreadpoolSettings,
     out: *mut *mut MOC_Threadpool,
 ) -> MOC_Status {
     let settings = || {
-        // SAFETY: the caller's contract. The size comes first, and nothing beyond it is read.
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
         let size =
             unsafe { read(settings.cast::<u32>()) }.ok_or(Refusal::new(Error::NullPointer, "settings is null"))?;
         if (size as usize) < size_of::<MOC_ThreadpoolSettings>() {
             return Err(Refusal::new(Error::InvalidSize, "size is less than sizeof(MOC_ThreadpoolSettings)"));
         }
-        // SAFETY: not null, and as large as it says; the caller's contract.
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
         unsafe { read(settings).map_or(Ok(ThreadpoolSettings::default()), |settings| settings.to_rust()) }
     };
     // SAFETY: the caller's contract.
@@ -328,10 +328,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 
 /// Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
 ///
-/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even while
-/// the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has been drawn
-/// so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY); MOC_Flush waits for the
-/// pool.
+/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
+/// while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
+/// been drawn so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY);
+/// MOC_Flush waits for the pool.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
 ///
@@ -357,7 +357,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
 /// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads. Meanwhile nobody queries the object other than through the pool.
+/// As MOC_ThreadpoolWakeThreads. Meanwhile no thread queries the object other than through the pool.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetResolution))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     pool: *const MOC_Threadpool,

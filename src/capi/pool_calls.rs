@@ -340,7 +340,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
-/// until a call that flushes returns.
+/// until a flushing call returns.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolMergeBuffers))]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     pool: *const MOC_Threadpool,

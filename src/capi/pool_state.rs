@@ -15,7 +15,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// A mesh with what is set, to which it points.
+    /// A mesh with this matrix and layout, to which it points.
     pub fn mesh(
         &self,
         vertices: *const f32,

@@ -22,7 +22,8 @@ use crate::{CullingResult, Error, MaskedOcclusionCulling};
 /// or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
 /// near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
 ///
-/// Errors: as MOC_RenderTriangles, but MOC_STATUS_BUSY: while a pool is drawing into the object, it is asked as the pool would be.
+/// Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes through the
+/// pool.
 ///
 /// # Safety
 /// As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may

@@ -109,7 +109,7 @@ pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
     text.map_or(c"not a status of this library", |t| t).as_ptr()
 }
 
-/// What a function that has nothing to do returns.
+/// Records success; called directly by functions that have nothing to do.
 #[inline]
 pub(super) fn done() -> MOC_Status {
     messages::done();

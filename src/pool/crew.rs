@@ -227,7 +227,7 @@ impl Crew {
         if let Some(task) = state.schedule.claim(external_thread()) {
             return self.perform(state, task);
         }
-        // The last of a frame takes less than it takes to sleep and wake.
+        // The last task of a frame takes less time than sleeping and waking.
         let count = self.finished.count();
         drop(state);
         self.finished.wait(count);

@@ -17,8 +17,8 @@
 //!
 //! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does a flushing
 //! thread: a sleeping thread takes tens of microseconds to wake, long enough to draw a small frame. When there is nothing for
-//! such a caller, or for a worker thread, to do, it spins for 20 microseconds before it sleeps. Threads beyond the processors are not started: they
-//! would only take turns with the others, and interrupt one that holds a bin.
+//! such a caller to do, it spins for 20 microseconds before it sleeps, as worker threads do. Threads beyond the processors are
+//! not started: they would only take turns with the others, and interrupt one that holds a bin.
 
 mod crew;
 mod gate;

@@ -75,7 +75,7 @@ pub(super) struct Target {
     tiles: TileRect,
     grid: Grid,
     bins: Vec<Bin>,
-    /// Clears that were submitted, for threads that submit or query while another one clears.
+    /// Clears submitted so far, for threads that submit or query while another one clears.
     clears: AtomicU64,
 }
 
@@ -171,7 +171,8 @@ impl Target {
                     _ => None,
                 });
                 // SAFETY: whoever has the bin's lock for writing is the only one who writes its tiles and areas; those who
-                // keep read least depths, as words, and queries at the object that began before the draw drop their answers.
+                // keep read least depths, as words, and direct queries of the object that began before the draw discard their
+                // answers.
                 let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
                 debug_assert_eq!(done, Ok(()), "a target has a buffer");
             }
