@@ -197,6 +197,22 @@ void DestroyInAnyOrder()
     }
 }
 
+// With a ring of two arrays and one job, a call that draws nothing or is refused counts as one of the later calls.
+void RingWithAnEmptyCall()
+{
+    for (int refused = 0; refused < 2; refused++) {
+        Setup s(0, 1);
+        Wall a(10), b(10);
+        s.pool->ClearBuffer();
+        s.pool->RenderTriangles(a.vertices, QUAD, 2);
+        s.pool->RenderTriangles(b.vertices, QUAD, refused == 0 ? 0 : -1);
+        quad_at(a.vertices, -3, -3, 3, 3, 1); // maxJobs later calls have returned
+        s.pool->Flush();
+        CHECK(s.moc->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 5) == MOC::VISIBLE);
+        CHECK(s.moc->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 20) == MOC::OCCLUDED);
+    }
+}
+
 // A ring of maxJobs + 1 arrays needs no Flush, whatever the size of the calls.
 void Ring()
 {
@@ -221,6 +237,12 @@ void Ring()
                 for (unsigned int k = 0; k < 150; k++) {
                     float *v = &vertices[static_cast<size_t>(k % slots) * 16 * MOST];
                     unsigned int *t = &indices[static_cast<size_t>(k % slots) * 6 * MOST];
+                    // A mesh may be culled to nothing, or refused: it counts among the maxJobs all the same.
+                    if (k % 11 == 3 || k % 11 == 4) {
+                        quad_at(v, -1, -1, 1, 1, 0.5f);
+                        s.pool->RenderTriangles(v, t, k % 11 == 3 ? 0 : -1);
+                        continue;
+                    }
                     const int quads = k % 37 == 5 ? MOST : 1 + static_cast<int>(next_random(&seed) % 3);
                     for (int q = 0; q < quads; q++) {
                         const float x = next_unit(&seed), y = next_unit(&seed), w = 50 + 49 * next_unit(&seed);
@@ -435,6 +457,7 @@ int main()
     FlushThenFree();
     DestroyInAnyOrder();
     Ring();
+    RingWithAnEmptyCall();
     WithoutFlush();
     NearPlane();
     QueriesAtTheObject();

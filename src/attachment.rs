@@ -19,14 +19,14 @@ pub(crate) trait Pool: Send + Sync {
     /// Flushes, then detaches the object with this attachment.
     fn forget(&self, attachment: &Attachment);
 
-    /// Tests a rectangle against what has been drawn so far.
-    fn test_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error>;
+    /// Tests a rectangle against what has been drawn so far. `None`: its object is another one by now.
+    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<Result<CullingResult, Error>>;
 
-    /// Tests a mesh against what has been drawn so far.
+    /// Tests a mesh against what has been drawn so far. `None`: its object is another one by now.
     ///
     /// # Safety
     /// Every vertex from the lowest to the highest index can be read.
-    unsafe fn test_mesh(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error>;
+    unsafe fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>>;
 }
 
 /// The pool of an object, if it has one.

@@ -257,30 +257,36 @@ impl MaskedOcclusionCulling {
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
         let mesh = Mesh { vertices, triangles, options };
-        // SAFETY: the caller's contract.
-        let Some(found) = self.attachment.undisturbed(|| unsafe { self.look_at_triangles(&mesh) }) else {
+        if !self.recorder.is_on() {
             // SAFETY: the caller's contract.
-            return unsafe { self.pool_triangles(&mesh) };
-        };
-        let (result, tally) = found?;
-        self.counters.add_query(self.statistics, 0, &tally);
+            if let Some(found) = self.attachment.undisturbed(|| unsafe { self.look_at_triangles(&mesh) }) {
+                let (result, tally) = found?;
+                self.counters.add_query(self.statistics, 0, &tally);
+                return Ok(result);
+            }
+        }
         // SAFETY: the caller's contract.
-        unsafe { self.recorder.test_triangles(Some(result), &mesh) };
-        Ok(result)
+        unsafe { self.noted_triangles(&mesh) }
     }
 
-    /// The same through the pool that draws into the object.
+    /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
     ///
     /// # Safety
     /// As there.
     #[cold]
-    unsafe fn pool_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+    unsafe fn noted_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        // As in `noted_rect`.
+        while let Some(pool) = self.attachment.pool() {
+            // SAFETY: the caller's contract.
+            if let Some(result) = unsafe { pool.test_mesh(&self.attachment, mesh) } {
+                return result;
+            }
+        }
         // SAFETY: the caller's contract.
         unsafe {
-            match self.attachment.pool() {
-                Some(pool) => pool.test_mesh(mesh),
-                None => self.ask_triangles(mesh),
-            }
+            let result = self.ask_triangles(mesh)?;
+            self.recorder.test_triangles(Some(result), mesh);
+            Ok(result)
         }
     }
 
@@ -324,34 +330,28 @@ impl MaskedOcclusionCulling {
     ) -> Result<CullingResult, Error> {
         // First, so that whoever does not record pays for nothing else: a small rectangle takes 10 ns.
         if self.recorder.is_on() {
-            return self.recorded_rect((x_min, y_min), (x_max, y_max), w_min);
+            return self.noted_rect((x_min, y_min), (x_max, y_max), w_min);
         }
         match self.attachment.undisturbed(|| self.look_at_rect([x_min, y_min, x_max, y_max], w_min)) {
             Some(found) => Ok(self.count_rect(found?)),
-            None => self.pool_rect((x_min, y_min), (x_max, y_max), w_min),
+            None => self.noted_rect((x_min, y_min), (x_max, y_max), w_min),
         }
     }
 
+    /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
     /// In pairs, which need no memory; see [`rectangle::test`].
     #[cold]
-    fn recorded_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
+    fn noted_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
         let edges = [min.0, min.1, max.0, max.1];
-        let Some(found) = self.attachment.undisturbed(|| self.look_at_rect(edges, w_min)) else {
-            return self.pool_rect(min, max, w_min);
-        };
-        let result = self.count_rect(found?);
+        // The pool may get another object meanwhile.
+        while let Some(pool) = self.attachment.pool() {
+            if let Some(result) = pool.test_rect(&self.attachment, edges, w_min) {
+                return result;
+            }
+        }
+        let result = self.ask_rect(edges, w_min)?;
         self.recorder.test_rect(Some(result), edges, w_min);
         Ok(result)
-    }
-
-    /// Through the pool that draws into the object.
-    #[cold]
-    fn pool_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
-        let edges = [min.0, min.1, max.0, max.1];
-        match self.attachment.pool() {
-            Some(pool) => pool.test_rect(edges, w_min),
-            None => self.ask_rect(edges, w_min),
-        }
     }
 
     /// The same, not recorded.

@@ -22,9 +22,15 @@ impl MOC_Threadpool {
     /// As MOC_ThreadpoolRenderMesh and [`MeshArguments::check`].
     unsafe fn render(&self, arguments: MeshArguments) -> Result<(), Refusal> {
         // SAFETY: the caller's contract.
-        unsafe {
-            let mesh = self.check(arguments)?;
-            Ok(self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)?)
+        match unsafe { self.check(arguments) } {
+            // SAFETY: the caller's contract.
+            Ok(mesh) => {
+                Ok(unsafe { self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
+            }
+            Err(refusal) => {
+                self.pool.refuse();
+                Err(refusal)
+            }
         }
     }
 

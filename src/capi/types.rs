@@ -98,7 +98,7 @@ pub enum MOC_ClipPlanes {
 
 /// Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
 /// for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
-/// that uses the object; must not throw.
+/// that uses the object; must not throw, and must not use the object or the pool that draws into it.
 pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void>;
 
 /// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.

@@ -122,6 +122,44 @@ impl Gate {
         call(target)
     }
 
+    /// The target, if it is the object with this attachment.
+    fn with_object_of<R>(
+        &self,
+        attachment: &Attachment,
+        call: impl FnOnce(&Target) -> Result<R, Error>,
+    ) -> Option<Result<R, Error>> {
+        let pass = self.pass();
+        let target = pass.as_ref().filter(|target| core::ptr::eq(target.moc().attachment(), attachment))?;
+        Some(target.moc().buffer().and_then(|_| call(target)))
+    }
+
+    /// Tests a rectangle against what has been drawn so far.
+    pub fn rect(&self, target: &Target, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
+        let tiles = target.moc().rectangle_tiles(edges)?;
+        let recording = self.recording(target);
+        // Checked before the query: an answer given while work is in flight depends on timing, so a replay cannot be
+        // compared with it.
+        let settled = recording.is_some() && self.crew.is_done();
+        let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
+        target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
+        Ok(result)
+    }
+
+    /// Tests a mesh against what has been drawn so far.
+    ///
+    /// # Safety
+    /// Every vertex from the lowest to the highest index can be read.
+    pub unsafe fn mesh(&self, target: &Target, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        let recording = self.recording(target);
+        // As in `rect`.
+        let settled = recording.is_some() && self.crew.is_done();
+        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+        let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(mesh) })?;
+        // SAFETY: as above.
+        unsafe { target.moc().recorder().test_triangles(settled.then_some(result), mesh) };
+        Ok(result)
+    }
+
     fn shut(&self) -> RwLockWriteGuard<'_, Option<Arc<Target>>> {
         self.target.write().unwrap_or_else(PoisonError::into_inner)
     }
@@ -157,29 +195,12 @@ impl Pool for Gate {
         *gate = None;
     }
 
-    fn test_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
-        self.with_buffer(|target| {
-            let tiles = target.moc().rectangle_tiles(edges)?;
-            let recording = self.recording(target);
-            // Checked before the query: an answer given while work is in flight depends on timing, so a replay cannot be
-            // compared with it.
-            let settled = recording.is_some() && self.crew.is_done();
-            let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
-            target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
-            Ok(result)
-        })
+    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<Result<CullingResult, Error>> {
+        self.with_object_of(attachment, |target| self.rect(target, edges, w_min))
     }
 
-    unsafe fn test_mesh(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
-        self.with_buffer(|target| {
-            let recording = self.recording(target);
-            // As in `test_rect`.
-            let settled = recording.is_some() && self.crew.is_done();
-            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-            let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(mesh) })?;
-            // SAFETY: as above.
-            unsafe { target.moc().recorder().test_triangles(settled.then_some(result), mesh) };
-            Ok(result)
-        })
+    unsafe fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>> {
+        // SAFETY: the caller's contract.
+        self.with_object_of(attachment, |target| unsafe { self.mesh(target, mesh) })
     }
 }

@@ -37,11 +37,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use crate::attachment::Pool;
 use crate::float_environment::in_default_environment;
 use crate::pipeline::Mesh;
 use crate::vertices::VertexSource;
-use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Vertices};
+use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, VertexLayout, Vertices};
 use crew::Crew;
 use gate::Gate;
 pub use settings::{ThreadStart, ThreadpoolSettings};
@@ -278,9 +277,19 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<(), Error> {
-        self.with_object(|moc| moc.check_mesh(&vertices, triangles))?;
+        if let Err(error) = self.with_object(|moc| moc.check_mesh(&vertices, triangles)) {
+            self.refuse();
+            return Err(error);
+        }
         // SAFETY: `check_mesh` saw that every index names a vertex; the rest is the caller's contract.
         unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
+    }
+
+    /// A draw that is refused counts as one without triangles: a program that rotates among arrays does not see its status in C++.
+    pub(crate) fn refuse(&self) {
+        let vertices = VertexSource { base: core::ptr::null(), layout: VertexLayout::CLIP_SPACE };
+        // SAFETY: no index, so no vertex is read. Without an object nothing is in flight.
+        let _ = unsafe { self.render_triangles_unchecked(vertices, &[], &DrawOptions::default()) };
     }
 
     /// # Safety
@@ -295,15 +304,22 @@ impl CullingThreadpool {
         self.gate.with_buffer(|target| {
             let _recording = self.gate.recording(target);
             let near = target.moc().near_clip_plane();
-            let parts = triangles.chunks(3 * CALL_TRIANGLES);
-            let last = parts.len();
-            for (part, number) in parts.zip(1..) {
+            let mut rest = triangles;
+            loop {
+                // A call without triangles is one part, too: it counts among those whose arrays a program rotates.
+                let (part, later) = rest.split_at(rest.len().min(3 * CALL_TRIANGLES));
                 let (triangles, indices) = (part.as_ptr(), part.len());
                 let call = Call { vertices, triangles, indices, options: *options, near, clears: 0 };
-                self.gate.crew.submit(call, number == last);
+                self.gate.crew.submit(call, later.is_empty());
+                rest = later;
+                if rest.is_empty() {
+                    break;
+                }
             }
-            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-            unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
+            if !triangles.is_empty() {
+                // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+                unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
+            }
             Ok(())
         })
     }
@@ -340,7 +356,7 @@ impl CullingThreadpool {
         y_max: f32,
         w_min: f32,
     ) -> Result<CullingResult, Error> {
-        self.gate.test_rect([x_min, y_min, x_max, y_max], w_min)
+        self.gate.with_buffer(|target| self.gate.rect(target, [x_min, y_min, x_max, y_max], w_min))
     }
 
     /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`]. `Visible` where they are
@@ -370,7 +386,7 @@ impl CullingThreadpool {
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
         // SAFETY: the caller's contract.
-        unsafe { self.gate.test_mesh(&Mesh { vertices, triangles, options }) }
+        self.gate.with_buffer(|target| unsafe { self.gate.mesh(target, &Mesh { vertices, triangles, options }) })
     }
 
     /// Looks at the object itself, which has a buffer.
