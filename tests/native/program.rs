@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{library, root, target};
 
@@ -33,7 +34,10 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
     build.std(if cpp { if target().is_msvc() { "c++14" } else { "c++11" } } else { "c11" });
     let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
 
-    let name = program.out.join(program.source.file_stem().unwrap_or_default());
+    // A name of its own: Windows may still hold the file of a program that has just run.
+    static BUILT: AtomicUsize = AtomicUsize::new(0);
+    let stem = program.source.file_stem().unwrap_or_default().display();
+    let name = program.out.join(format!("{stem}-{}", BUILT.fetch_add(1, Ordering::Relaxed)));
     let exe = name.with_extension(target().executable_extension());
     let mut command = compiler.to_command();
     command.current_dir(program.out);
