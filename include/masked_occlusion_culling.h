@@ -490,7 +490,7 @@ typedef void (*MOC_MessageCallback)(void *user, int32_t status, const char *mess
 /**
  * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
  * for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
- * that uses the object; must not throw.
+ * that uses the object; must not throw, and must not use the object or the pool that draws into it.
  */
 typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
 
@@ -1207,7 +1207,9 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
  * null or can be written for width times height floats.
  */
-MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc, float *out, int32_t flip_y);
+MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc,
+                                       float *out,
+                                       int32_t flip_y);
 
 /**
  * As MOC_ComputePixelDepthBuffer, with the length of `out` in floats.
@@ -1444,8 +1446,7 @@ MOC_Status MOC_ThreadpoolIsDone(const struct MOC_Threadpool *pool,
  * Required:
  * As MOC_ThreadpoolWakeThreads. `threads` is null or can be written.
  */
-MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool,
-                                    uint32_t *threads);
+MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool, uint32_t *threads);
 
 /**
  * Writes the number of columns and rows of bins, which depends on the resolution.
