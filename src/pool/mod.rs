@@ -288,8 +288,12 @@ impl CullingThreadpool {
     /// A draw that is refused counts as one without triangles: a program that rotates among arrays does not see its status in C++.
     pub(crate) fn refuse(&self) {
         let vertices = VertexSource { base: core::ptr::null(), layout: VertexLayout::CLIP_SPACE };
-        // SAFETY: no index, so no vertex is read. Without an object nothing is in flight.
-        let _ = unsafe { self.render_triangles_unchecked(vertices, &[], &DrawOptions::default()) };
+        let (triangles, options) = (NonNull::dangling().as_ptr().cast_const(), DrawOptions::default());
+        // Without an object nothing is in flight.
+        let _ = self.gate.with_buffer(|_| {
+            self.gate.crew.submit(Call { vertices, triangles, indices: 0, options, near: 0.0, clears: 0 }, true);
+            Ok(())
+        });
     }
 
     /// # Safety
@@ -316,10 +320,8 @@ impl CullingThreadpool {
                     break;
                 }
             }
-            if !triangles.is_empty() {
-                // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-                unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
-            }
+            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
+            unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
             Ok(())
         })
     }
