@@ -288,7 +288,7 @@ impl CullingThreadpool {
     /// A draw that is refused counts as one without triangles: a program that rotates among arrays does not see its status in C++.
     pub(crate) fn refuse(&self) {
         let vertices = VertexSource { base: core::ptr::null(), layout: VertexLayout::CLIP_SPACE };
-        let (triangles, options) = (NonNull::dangling().as_ptr().cast_const(), DrawOptions::default());
+        let (triangles, options) = (NonNull::<u32>::dangling().as_ptr().cast_const(), DrawOptions::default());
         // Without an object nothing is in flight.
         let _ = self.gate.with_buffer(|_| {
             self.gate.crew.submit(Call { vertices, triangles, indices: 0, options, near: 0.0, clears: 0 }, true);

@@ -302,13 +302,15 @@ mod tests {
                 if !schedule.is_full() {
                     schedule.submit_ready(vec![id]);
                     submitted.push(id);
-                    (ends.push(false), kept.push(true));
+                    ends.push(false);
+                    kept.push(true);
                 }
             } else if submits {
                 let last = random.u8(0..4) != 0;
                 if schedule.submit(id, random.usize(0..2 * BATCH_WEIGHT), last).is_ok() {
                     submitted.push(id);
-                    (ends.push(last), kept.push(false));
+                    ends.push(last);
+                    kept.push(false);
                 }
             }
             assert!(schedule.in_flight().end - schedule.in_flight().start <= max as u64);
