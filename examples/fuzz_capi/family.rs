@@ -36,6 +36,8 @@ pub struct Family {
     pub empty: bool,
     /// While a pool draws into one member.
     pub pool: Option<Pool>,
+    /// A pool has a member, which is used directly meanwhile: no other pool may have it.
+    pub attached: bool,
     /// A pool was asked amid its work: how far its member looked depends on what was drawn by then.
     pub asked_early: bool,
 }
@@ -51,6 +53,7 @@ impl Family {
             own_allocator,
             empty: true,
             pool: None,
+            attached: false,
             asked_early: false,
         };
         let mut seen = Vec::new();

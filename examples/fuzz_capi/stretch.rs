@@ -13,7 +13,7 @@ use crate::pool::Pool;
 impl Driver<'_> {
     /// Some tens of calls through a pool.
     pub(crate) fn stretch(&mut self, which: usize) -> Check {
-        if self.families[which].pool.is_some() {
+        if self.families[which].pool.is_some() || self.families[which].attached {
             return Ok(());
         }
         let rng = &mut self.rng;
@@ -164,7 +164,9 @@ impl Driver<'_> {
             self.settle(1 - which)?;
         } else {
             let pool = self.families[which].pool.take();
+            self.families[which].attached = true;
             let done = self.step(which);
+            self.families[which].attached = false;
             self.families[which].pool = pool;
             done?;
         }
