@@ -37,6 +37,17 @@ fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
     result.expect("the body ran")
 }
 
+/// Rounds to the nearest integer, ties to even, by additions. `x` is below 2^51 in magnitude, or a NaN.
+///
+/// The standard library calls C's `rint` where the processor's baseline has no such instruction, and MinGW's obeys the x87
+/// control word, which engines also change and which calls do not set.
+#[inline]
+pub(crate) fn round_ties_even(x: f64) -> f64 {
+    // 1.5 * 2^52: the sum's last bit is worth one, so that the addition rounds.
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    ((x + SHIFT) - SHIFT).copysign(x)
+}
+
 /// MXCSR: six exception flags in the low bits, control bits above them.
 #[cfg(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse")))]
 mod control {
@@ -112,6 +123,32 @@ mod control {
 
     #[inline]
     pub fn write((): Register) {}
+}
+
+#[cfg(test)]
+mod rounding {
+    use super::round_ties_even;
+
+    #[test]
+    fn it_rounds_as_the_standard_library_does() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let largest = f64::from(1u32 << 31) * f64::from(1 << 20) - 1.0;
+        let mut all =
+            vec![0.0, 0.5, 1.5, 2.5, 0.499_999_999_999_999_94, f64::MIN_POSITIVE, f64::NAN, largest, largest - 0.5];
+        for bits in 0..51 {
+            let power = (1u64 << bits) as f64;
+            all.extend([power - 0.5, power, power + 0.5]);
+            all.extend((0..200).map(|_| random.f64() * power));
+            all.extend((0..20).map(|_| (random.f64() * power).floor() + 0.5));
+        }
+        for x in all.iter().filter(|x| x.is_nan() || x.abs() <= largest).flat_map(|x| [*x, -x]) {
+            let (is, should) = (round_ties_even(x), x.round_ties_even());
+            assert!(
+                is.to_bits() == should.to_bits() || is.is_nan() && should.is_nan(),
+                "{x:e}: {is:e}, not {should:e}"
+            );
+        }
+    }
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

@@ -11,6 +11,7 @@ use super::Facing;
 use super::project::{Camera, FARTHEST_W, SHIFT};
 use super::setup::Purpose;
 use super::survivors::Survivors;
+use crate::float_environment::round_ties_even;
 
 /// A triangle clipped by five planes has at most eight corners, which six triangles fan out from.
 pub(super) const MAX_VERTICES: usize = 8;
@@ -149,7 +150,7 @@ fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize)
 fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
     let limit = f64::from(1 << 26);
     let snap = |x: f64, scale: f32, half: f32| {
-        (x / w * f64::from(scale) + f64::from(half)).round_ties_even().clamp(-limit, limit) as f32
+        round_ties_even((x / w * f64::from(scale) + f64::from(half)).clamp(-limit, limit)) as f32
     };
     [snap(x, camera.half_width, camera.half_width), snap(y, camera.row_scale, camera.half_height), (1.0 / w) as f32]
 }

@@ -8,6 +8,7 @@ use super::setup::Setup;
 use super::survivors::{ROOM, Survivors};
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::buffer::{Buffer, TileRect};
+use crate::float_environment::round_ties_even;
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
@@ -43,7 +44,7 @@ pub(super) fn draw<S: Simd, L: LastStep>(
 fn fetch(list: &TriList<'_>, range: core::ops::Range<usize>, survivors: &mut Survivors, tally: &mut Tally) {
     let limit = GUARD_BAND + (1 << 22) as f32;
     let sound = |&[x, y, z]: &[f32; 3]| {
-        let whole = |x: f32| x.abs() <= limit && x == x.round_ties_even();
+        let whole = |x: f32| x.abs() <= limit && f64::from(x) == round_ties_even(f64::from(x));
         // Just outside of the range of 1/w, for clipping rounds.
         whole(x) && whole(y) && (0.5 / FARTHEST_W..=2.0 / NEAREST_W).contains(&z)
     };

@@ -2,6 +2,7 @@
 
 use super::pair::Pair;
 use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use crate::float_environment::round_ties_even;
 
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
@@ -238,7 +239,8 @@ impl Simd for Scalar4 {
     }
     #[inline(always)]
     fn round(self, a: [f32; 4]) -> [i32; 4] {
-        lanes!(a => a.round_ties_even() as i32)
+        // What is too large for an i32 may round otherwise, but is clamped to the same one.
+        lanes!(a => round_ties_even(f64::from(a)) as i32)
     }
     #[inline(always)]
     fn trunc(self, a: [f32; 4]) -> [i32; 4] {
