@@ -15,19 +15,6 @@
 
 #include <vector>
 
-#ifdef _WIN32
-// MinGW's fesetround also turns the x87, which MinGW's own rint follows and no engine on 64-bit Windows sets: only MXCSR.
-static int set_rounding(int rounding)
-{
-    _mm_setcsr((_mm_getcsr() & ~0x6000u) | (static_cast<unsigned int>(rounding) << 3));
-    return 0;
-}
-static int get_rounding() { return static_cast<int>((_mm_getcsr() & 0x6000u) >> 3); }
-#else
-static int set_rounding(int rounding) { return fesetround(rounding); }
-static int get_rounding() { return fegetround(); }
-#endif
-
 namespace
 {
 
@@ -112,10 +99,10 @@ int main()
     for (MOC::Implementation implementation : {MOC::SCALAR, MOC::SSE2, MOC::SSE41, MOC::AVX2, MOC::AVX512}) {
         const Result expected = Run(implementation);
         for (int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
-            CHECK(set_rounding(rounding) == 0);
+            CHECK(fesetround(rounding) == 0);
             const Result result = Run(implementation);
-            CHECK_EQ(get_rounding(), rounding);
-            set_rounding(FE_TONEAREST);
+            CHECK_EQ(fegetround(), rounding);
+            fesetround(FE_TONEAREST);
             // This program itself rounded TestRect's arguments differently, so only those answers may differ.
             Result same = result;
             for (size_t i = 1; i < same.answers.size(); i += 2)
