@@ -8,7 +8,7 @@
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use crate::pipeline::Mesh;
+use crate::source::Mesh;
 use crate::{CullingResult, Error};
 
 /// A pool as seen by its object.
@@ -23,10 +23,7 @@ pub(crate) trait Pool: Send + Sync {
     fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<Result<CullingResult, Error>>;
 
     /// Tests a mesh against what has been drawn so far. `None`: its object is another one by now.
-    ///
-    /// # Safety
-    /// Every vertex from the lowest to the highest index can be read.
-    unsafe fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>>;
+    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>>;
 }
 
 /// The pool of an object, if it has one.

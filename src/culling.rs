@@ -1,22 +1,26 @@
 //! The object that engines hold: settings, a buffer, and the calls, each of which checks and hands on.
 
+mod recording;
+mod replay;
+
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::attachment::Attachment;
 use crate::bins::TriList;
-use crate::buffer::{Buffer, TileRect};
-use crate::pipeline::{self, Camera, Cuts, Kept, Mesh};
+use crate::bounds::rectangle;
+use crate::buffer::{Buffer, MAX_SIZE, Region, TileRect};
+use crate::geometry::Camera;
+use crate::kernel;
 use crate::recorder::Recorder;
-use crate::rectangle;
+use crate::simd::Level;
+use crate::sink::{BinBounds, BinnedTriangles};
+use crate::source::Mesh;
 use crate::statistics::{Counters, Tally};
 use crate::vertices::VertexSource;
 use crate::{
     Allocator, ClipPlanes, CullingResult, DrawOptions, Error, Implementation, ScissorRect, Settings, Statistics,
     UpdateRule, Vertices, YAxis,
 };
-
-/// The largest width and height of a buffer, in pixels.
-pub(crate) const MAX_SIZE: u32 = 16_384;
 
 /// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
 ///
@@ -28,7 +32,7 @@ pub(crate) const MAX_SIZE: u32 = 16_384;
 pub struct MaskedOcclusionCulling {
     /// First, so that it is dropped first: dropping it draws what a pool still has in flight.
     attachment: Attachment,
-    implementation: Implementation,
+    level: Level,
     update_rule: UpdateRule,
     y_axis: YAxis,
     allocator: Allocator,
@@ -51,7 +55,7 @@ impl MaskedOcclusionCulling {
     pub fn new(settings: Settings) -> Self {
         Self {
             attachment: Attachment::default(),
-            implementation: settings.implementation.capped(),
+            level: Level::capped(settings.implementation),
             update_rule: settings.update_rule,
             y_axis: settings.y_axis,
             allocator: settings.allocator,
@@ -65,7 +69,7 @@ impl MaskedOcclusionCulling {
 
     /// The instruction set in use.
     pub fn implementation(&self) -> Implementation {
-        self.implementation
+        self.level.implementation()
     }
 
     /// The update rule in use.
@@ -164,10 +168,11 @@ impl MaskedOcclusionCulling {
     /// As [`Self::merge_buffer`]: where one does not fit, none is folded.
     pub fn merge_buffers(&mut self, others: &[&Self]) -> Result<(), Error> {
         self.attachment.check_idle()?;
-        let mine = self.buffer()?;
         let theirs = self.mergeable(others)?;
-        // SAFETY: `&mut self`, and the others are borrowed.
-        unsafe { crate::buffer::merge::merge(self.implementation, mine, &theirs, mine.all_tiles()) };
+        let level = self.level;
+        let mine = Region::whole(self.buffer.as_mut().ok_or(Error::NoBuffer)?);
+        // SAFETY: no pool draws into the others, which are borrowed.
+        unsafe { crate::buffer::merge::merge(level, mine, &theirs) };
         Ok(())
     }
 
@@ -214,13 +219,12 @@ impl MaskedOcclusionCulling {
     ) -> Result<CullingResult, Error> {
         self.attachment.check_idle()?;
         let camera = self.camera(options)?;
-        let buffer = self.buffer.as_ref().ok_or(Error::NoBuffer)?;
-        let mesh = Mesh { vertices, triangles, options };
-        // SAFETY: the caller's contract for the vertices; `&mut self` keeps every other user of the buffer away.
-        let (result, tally) = unsafe { pipeline::draw(self.implementation, buffer, &camera, &mesh) };
-        self.counters.add_draw_alone(self.statistics, &tally);
+        let region = Region::whole(self.buffer.as_mut().ok_or(Error::NoBuffer)?);
         // SAFETY: the caller's contract.
-        unsafe { self.recorder.render_triangles(Some(result), &mesh) };
+        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
+        let (result, tally) = kernel::draw(self.level, region, &camera, &mesh);
+        self.counters.add_draw_alone(self.statistics, &tally);
+        self.recorder.render_triangles(Some(result), &mesh);
         Ok(result)
     }
 
@@ -256,59 +260,43 @@ impl MaskedOcclusionCulling {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        let mesh = Mesh { vertices, triangles, options };
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
         if !self.recorder.is_on() {
-            // SAFETY: the caller's contract.
-            if let Some(found) = self.attachment.undisturbed(|| unsafe { self.look_at_triangles(&mesh) }) {
+            if let Some(found) = self.attachment.undisturbed(|| self.look_at_triangles(&mesh)) {
                 let (result, tally) = found?;
                 self.counters.add_query(self.statistics, 0, &tally);
                 return Ok(result);
             }
         }
-        // SAFETY: the caller's contract.
-        unsafe { self.noted_triangles(&mesh) }
+        self.noted_triangles(&mesh)
     }
 
     /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
-    ///
-    /// # Safety
-    /// As there.
     #[cold]
-    unsafe fn noted_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+    fn noted_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
         // As in `noted_rect`.
         while let Some(pool) = self.attachment.pool() {
-            // SAFETY: the caller's contract.
-            if let Some(result) = unsafe { pool.test_mesh(&self.attachment, mesh) } {
+            if let Some(result) = pool.test_mesh(&self.attachment, mesh) {
                 return result;
             }
         }
-        // SAFETY: the caller's contract.
-        unsafe {
-            let result = self.ask_triangles(mesh)?;
-            self.recorder.test_triangles(Some(result), mesh);
-            Ok(result)
-        }
+        let result = self.ask_triangles(mesh)?;
+        self.recorder.test_triangles(Some(result), mesh);
+        Ok(result)
     }
 
     /// The same, not recorded.
-    ///
-    /// # Safety
-    /// As there.
-    pub(crate) unsafe fn ask_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
-        // SAFETY: the caller's contract.
-        let (result, tally) = unsafe { self.look_at_triangles(mesh) }?;
+    pub(crate) fn ask_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        let (result, tally) = self.look_at_triangles(mesh)?;
         self.counters.add_query(self.statistics, 0, &tally);
         Ok(result)
     }
 
     /// The same without counting; also returns what to count.
-    ///
-    /// # Safety
-    /// As there.
-    unsafe fn look_at_triangles(&self, mesh: &Mesh<'_>) -> Result<(CullingResult, Tally), Error> {
-        let camera = self.camera(mesh.options)?;
-        // SAFETY: the caller's contract for the vertices.
-        Ok(unsafe { pipeline::test(self.implementation, self.buffer()?, &camera, mesh) })
+    fn look_at_triangles(&self, mesh: &Mesh<'_>) -> Result<(CullingResult, Tally), Error> {
+        let camera = self.camera(mesh.options())?;
+        Ok(kernel::test(self.level, self.buffer()?, &camera, mesh))
     }
 
     /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose
@@ -363,7 +351,7 @@ impl MaskedOcclusionCulling {
     /// The same without counting; also returns what to count.
     #[inline(always)]
     fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> Result<(CullingResult, u64), Error> {
-        Ok(rectangle::test(self.implementation, self.buffer()?, self.y_axis, edges, w_min))
+        Ok(rectangle::test(self.level, self.buffer()?, self.y_axis, edges, w_min))
     }
 
     #[inline(always)]
@@ -415,10 +403,10 @@ impl MaskedOcclusionCulling {
             return Err(Error::InvalidSize);
         }
         let camera = self.camera(options)?;
-        let mesh = Mesh { vertices, triangles, options };
-        // SAFETY: the caller's contract for the vertices.
+        // SAFETY: the caller's contract.
+        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
         let (result, tally, full) =
-            unsafe { pipeline::bin(self.implementation, buffer, &camera, &mesh, lists, bin_size, (bins_w, bins_h)) };
+            kernel::bin_to_lists(self.level, buffer, &camera, &mesh, lists, bin_size, (bins_w, bins_h));
         self.counters.add_draw(self.statistics, &tally);
         if full { Err(Error::ListFull) } else { Ok(result) }
     }
@@ -445,49 +433,42 @@ impl MaskedOcclusionCulling {
         self.attachment.check_idle()?;
         let buffer = self.buffer()?;
         let scissor = buffer.scissor_tiles(scissor)?;
-        // SAFETY: the caller's contract for the buffer.
-        let tally = unsafe { pipeline::draw_list(self.implementation, buffer, list, scissor) };
+        // SAFETY: the caller's contract: nobody else uses the rectangle. The coarse level is left as it is.
+        let region = unsafe { Region::new(buffer, scissor, None) };
+        let tally = kernel::draw_list(self.level, region, list);
         self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
 
-    /// Projects a mesh with this near plane and keeps what may be drawn; see [`pipeline::keep`].
-    ///
-    /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
-    pub(crate) unsafe fn keep(
+    /// Projects a mesh with this near plane and bins what may be drawn; see [`kernel::bin`].
+    pub(crate) fn bin(
         &self,
-        vertices: VertexSource,
-        triangles: &[u32],
-        options: &DrawOptions,
+        mesh: &Mesh<'_>,
         near: f32,
-        (cuts, sift): (&Cuts, bool),
-        kept: &mut Kept,
+        (bounds, prefilter): (&BinBounds, bool),
+        binned: &mut BinnedTriangles,
     ) -> Result<(), Error> {
-        let camera = self.camera_at(options, near)?;
-        let mesh = Mesh { vertices, triangles, options };
-        // Counts want to know of hidden triangles, too.
-        let sift = sift && !self.statistics;
-        // SAFETY: the caller's contract.
-        let tally = unsafe { pipeline::keep(self.implementation, self.buffer()?, &camera, &mesh, (cuts, sift), kept) };
+        let camera = self.camera_at(mesh.options(), near)?;
+        // Statistics count hidden triangles, too.
+        let prefilter = prefilter && !self.statistics;
+        let tally = kernel::bin(self.level, self.buffer()?, &camera, mesh, (bounds, prefilter), binned);
         self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
 
-    /// Draws what was kept; see [`pipeline::draw_kept`].
-    ///
-    /// # Safety
-    /// As there.
-    pub(crate) unsafe fn draw_kept<'a>(
+    /// Draws binned triangles into a region of this object's buffer; see [`kernel::draw_binned`].
+    pub(crate) fn draw_binned<'a>(
         &self,
-        kept: impl Iterator<Item = &'a Kept>,
-        piece: (TileRect, usize),
-        drawn: &mut u32,
-    ) -> Result<(), Error> {
-        // SAFETY: the caller's contract.
-        let tally = unsafe { pipeline::draw_kept(self.implementation, self.buffer()?, kept, piece, drawn) };
+        region: Region<'_>,
+        triangles: impl Iterator<Item = &'a BinnedTriangles>,
+        bin: usize,
+    ) {
+        let tally = kernel::draw_binned(self.level, region, triangles, bin);
         self.counters.add_draw(self.statistics, &tally);
-        Ok(())
+    }
+
+    pub(crate) fn level(&self) -> Level {
+        self.level
     }
 
     /// Writes the depth of every pixel to `depth`, width by height, row by row; negative where nothing
@@ -554,7 +535,7 @@ impl MaskedOcclusionCulling {
 
     /// Is every index below `count`?
     pub(crate) fn check_indices(&self, triangles: &[u32], count: usize) -> Result<(), Error> {
-        match pipeline::max_index(self.implementation, triangles) {
+        match kernel::max_index(self.level, triangles) {
             Some(max) if max as usize >= count => Err(Error::IndexOutOfRange),
             _ => Ok(()),
         }

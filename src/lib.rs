@@ -4,33 +4,36 @@
 //! by its triangles, whether any of it could be seen. An answer of [`CullingResult::Occluded`] is certain; any
 //! doubt is answered [`CullingResult::Visible`].
 //!
-//! The buffer keeps no depth a pixel. Of each sub-tile of 8x4 pixels it keeps a reference depth, which no pixel is
-//! behind, and one to three working layers, each a depth and a mask of the pixels that it speaks for; triangles are
-//! taken in by one of four [`UpdateRule`]s (Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion
+//! The buffer stores no depth per pixel. For each sub-tile of 8x4 pixels it stores a reference depth, which no pixel is
+//! behind, and one to three working layers, each a depth and a mask of the pixels to which it applies; triangles are
+//! inserted by one of four [`UpdateRule`]s (Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion
 //! Culling", HPG 2016). Depth is 1/w: 0 is infinitely far, larger is nearer.
 //!
 //! Coverage is exact: vertices are snapped to 1/256 pixel, and a pixel is covered when its centre is, by the top-left
 //! rule. Every instruction set (see [`Implementation`]) gives the same bits.
 //!
-//! The way of a triangle is told in `src/pipeline/mod.rs`, the memory's layout in `src/buffer/mod.rs`, the vector
-//! layer in `src/simd/mod.rs`. The C interface is in [`capi`]; C and C++ include what is in `include/`.
+//! `src/kernel.rs` describes the way of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the vector layer. The C interface is in [`capi`]; C and C++ include what is in `include/`.
 #![warn(missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod allocator;
 mod attachment;
 mod bins;
+mod bounds;
 mod buffer;
 pub mod capi;
 mod culling;
 mod error;
 mod float_environment;
-mod pipeline;
+mod geometry;
+mod kernel;
 mod pool;
+mod raster;
 mod recorder;
-mod rectangle;
 mod settings;
 mod simd;
+mod sink;
+mod source;
 mod statistics;
 mod transform;
 mod types;

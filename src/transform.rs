@@ -3,9 +3,10 @@
 use glam::Mat4;
 
 use crate::Vertices;
-use crate::simd::{self, Job, Simd};
+use crate::geometry::project::dot;
+use crate::simd::{self, Job, Level, MAX_LANES, Simd};
+use crate::source::VertexReader;
 use crate::vertices::VertexSource;
-use crate::{Implementation, pipeline};
 
 /// Transforms positions (x, y, z, 1) by `matrix` into packed clip-space x, y, z, w: as many as there are
 /// vertices or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
@@ -18,7 +19,6 @@ pub fn transform_vertices(matrix: &Mat4, vertices: Vertices<'_>, out: &mut [[f32
 /// # Safety
 /// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
 pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
-    let best = *Implementation::available().last().unwrap_or(&Implementation::Scalar);
     // In parts whose vertices have numbers of 32 bits, as those that a mesh names.
     const PART: usize = 1 << 30;
     let mut done = 0;
@@ -26,7 +26,7 @@ pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mu
         let part = PART.min(count - done);
         let base = source.base.wrapping_add(done * source.layout.stride as usize);
         let source = VertexSource { base, ..source };
-        simd::run(best, Transform { matrix, source, out: out.wrapping_add(4 * done), count: part });
+        simd::run(Level::best(), Transform { matrix, source, out: out.wrapping_add(4 * done), count: part });
         done += part;
     }
 }
@@ -44,6 +44,44 @@ impl Job for Transform<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, s: S) {
         // SAFETY: whoever made the job vouched for both arrays.
-        unsafe { pipeline::transform(s, self.matrix, self.source, self.out, self.count) }
+        unsafe { transform(s, self.matrix, self.source, self.out, self.count) }
+    }
+}
+
+/// (x, y, z, 1) times a matrix, for `count` vertices, as packed x, y, z, w.
+///
+/// # Safety
+/// The vertices can be read and `out` can be written for four floats each; either may be unaligned.
+#[inline(always)]
+unsafe fn transform<S: Simd>(s: S, matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
+    let m = matrix.to_cols_array();
+    let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
+    let rows = [row(0), row(1), row(2), row(3)];
+    let reader = VertexReader::new(s, source, None);
+    let mut first = 0;
+    while first < count {
+        let n = S::LANES.min(count - first);
+        // SAFETY: the caller's contract.
+        let [x, y, z] = unsafe {
+            if n == S::LANES {
+                reader.load(first as u32, first + n < count)
+            } else {
+                let last = count - 1;
+                let indices: [u32; MAX_LANES] = core::array::from_fn(|lane| (first + lane).min(last) as u32);
+                let v = reader.load_each(indices);
+                [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())]
+            }
+        };
+        let mut lanes = [[0.0_f32; MAX_LANES]; 4];
+        for (lane, row) in lanes.iter_mut().zip(&rows) {
+            // SAFETY: sixteen floats hold a vector.
+            unsafe { s.store_f(lane.as_mut_ptr(), dot(s, row, x, y, z)) };
+        }
+        for k in 0..n {
+            let vertex = [lanes[0][k], lanes[1][k], lanes[2][k], lanes[3][k]];
+            // SAFETY: the caller's contract.
+            unsafe { out.add(4 * (first + k)).cast::<[f32; 4]>().write_unaligned(vertex) };
+        }
+        first += n;
     }
 }

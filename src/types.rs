@@ -21,38 +21,6 @@ pub enum Implementation {
     Simd128 = 17,
 }
 
-impl Implementation {
-    /// Every instruction set that this processor can run, the plainest first.
-    pub fn available() -> &'static [Implementation] {
-        crate::simd::available()
-    }
-
-    /// The best instruction set that this processor has and that `self`, as the highest allowed,
-    /// permits. On another architecture than the named one, anything but `Scalar` permits all.
-    pub fn capped(self) -> Implementation {
-        let all = Self::available();
-        if self == Implementation::Scalar {
-            return self;
-        }
-        if !self.is_of_this_architecture() {
-            return *all.last().unwrap_or(&Implementation::Scalar);
-        }
-        *all.iter().rfind(|i| **i as i32 <= self as i32).unwrap_or(&Implementation::Scalar)
-    }
-
-    /// Whether it belongs to the architecture that the library is compiled for (this processor may still lack it).
-    fn is_of_this_architecture(self) -> bool {
-        match self {
-            Implementation::Scalar => true,
-            Implementation::Sse2 | Implementation::Sse41 | Implementation::Avx2 | Implementation::Avx512 => {
-                cfg!(any(target_arch = "x86_64", target_arch = "x86"))
-            }
-            Implementation::Neon => cfg!(target_arch = "aarch64"),
-            Implementation::Simd128 => cfg!(target_arch = "wasm32"),
-        }
-    }
-}
-
 /// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(i32)]

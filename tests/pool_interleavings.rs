@@ -1,12 +1,12 @@
-//! The pool's crew and schedule, as they are, under loom: every order in which threads can take turns (with a few
+//! The pool's workers and schedule, as they are, under loom: every order in which threads can take turns (with a few
 //! switches between two waits), against a target that notes what it is given. Nothing hangs, nothing is lost, no two
 //! threads draw in a bin at once, and each bin draws in the order of submission.
 #![allow(dead_code, reason = "the two files are parts of a larger module")]
 
-#[path = "../src/pool/crew.rs"]
-mod crew;
 #[path = "../src/pool/schedule.rs"]
 mod schedule;
+#[path = "../src/pool/workers.rs"]
+mod workers;
 
 mod processor {
     /// Where a thread runs changes nothing.
@@ -34,9 +34,9 @@ mod sync {
 
     /// Nobody waits a moment: all go to sleep, or look again when they find that something was finished.
     #[derive(Default)]
-    pub(super) struct Glance(loom::sync::atomic::AtomicU64);
+    pub(super) struct SpinWait(loom::sync::atomic::AtomicU64);
 
-    impl Glance {
+    impl SpinWait {
         pub fn changed(&self) {
             self.0.fetch_add(1, loom::sync::atomic::Ordering::Relaxed);
         }
@@ -49,12 +49,12 @@ mod sync {
     }
 }
 
-mod pipeline {
+mod sink {
     /// The numbers of calls instead of triangles.
     #[derive(Default)]
-    pub struct Kept(pub Vec<u32>);
+    pub struct BinnedTriangles(pub Vec<u32>);
 
-    impl Kept {
+    impl BinnedTriangles {
         pub fn clear(&mut self) {
             self.0.clear();
         }
@@ -62,7 +62,7 @@ mod pipeline {
 }
 
 mod target {
-    use super::pipeline::Kept;
+    use super::sink::BinnedTriangles;
     use super::sync::Arc;
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
     use std::sync::{Mutex, TryLockError};
@@ -74,7 +74,7 @@ mod target {
     }
 
     pub enum Work {
-        Triangles(Kept),
+        Triangles(BinnedTriangles),
         Clear(u64),
     }
 
@@ -84,8 +84,8 @@ mod target {
         busy: Vec<AtomicBool>,
         /// Odd while work is in flight.
         turns: AtomicU64,
-        /// Pieces drawn by bins, for tests that wait without calling the crew.
-        pieces: loom::sync::Mutex<usize>,
+        /// Parts drawn by bins, for tests that wait without calling the workers.
+        parts: loom::sync::Mutex<usize>,
         progress: loom::sync::Condvar,
     }
 
@@ -97,7 +97,7 @@ mod target {
                 clears: AtomicU64::new(0),
                 busy: (0..bins).map(|_| AtomicBool::new(false)).collect(),
                 turns: AtomicU64::new(0),
-                pieces: loom::sync::Mutex::new(0),
+                parts: loom::sync::Mutex::new(0),
                 progress: loom::sync::Condvar::new(),
             }
         }
@@ -110,10 +110,10 @@ mod target {
             self.turns.load(SeqCst) % 2 == 1
         }
 
-        /// Waits until this many pieces are drawn; if no thread draws them, loom reports a deadlock.
-        pub fn wait(&self, pieces: usize) {
-            let mut drawn = self.pieces.lock().unwrap();
-            while *drawn < pieces {
+        /// Waits until this many parts are drawn; if no thread draws them, loom reports a deadlock.
+        pub fn wait(&self, parts: usize) {
+            let mut drawn = self.parts.lock().unwrap();
+            while *drawn < parts {
                 drawn = self.progress.wait(drawn).unwrap();
             }
         }
@@ -126,10 +126,10 @@ mod target {
             self.clears.load(SeqCst)
         }
 
-        pub unsafe fn keep(&self, calls: &[Call], kept: &mut Kept) {
-            kept.clear();
+        pub unsafe fn bin(&self, calls: &[Call], binned: &mut BinnedTriangles) {
+            binned.clear();
             loom::thread::yield_now();
-            kept.0.extend(calls.iter().map(|call| call.number));
+            binned.0.extend(calls.iter().map(|call| call.number));
             assert!(calls.iter().all(|call| call.clears == calls[0].clears), "a clear ends a batch");
         }
 
@@ -143,23 +143,23 @@ mod target {
             };
             for work in work {
                 match &**work {
-                    Work::Triangles(kept) => drawn.extend(&kept.0),
+                    Work::Triangles(binned) => drawn.extend(&binned.0),
                     Work::Clear(number) => drawn.push(1000 + *number as u32),
                 }
             }
             drop(drawn);
             assert!(self.busy[bin].swap(false, SeqCst));
-            *self.pieces.lock().unwrap() += work.len();
+            *self.parts.lock().unwrap() += work.len();
             self.progress.notify_all();
         }
     }
 }
 
-use crew::Crew;
 use loom::thread;
 use std::sync::atomic::Ordering::SeqCst;
 use sync::Arc;
 use target::{Call, Target, Work};
+use workers::Workers;
 
 fn call(number: u32) -> Call {
     // Each fills a batch.
@@ -171,8 +171,8 @@ fn small(number: u32) -> Call {
     Call { number, indices: 3, clears: 0 }
 }
 
-fn clear(crew: &Crew, target: &Target) {
-    crew.do_now(|| Work::Clear(target.clears.fetch_add(1, SeqCst) + 1));
+fn clear(workers: &Workers, target: &Target) {
+    workers.do_now(|| Work::Clear(target.clears.fetch_add(1, SeqCst) + 1));
     assert_eq!(
         target.drawn[0].lock().unwrap().last(),
         Some(&(1000 + target.clears() as u32)),
@@ -181,41 +181,41 @@ fn clear(crew: &Crew, target: &Target) {
 }
 
 /// Plays what a program does in every order, with this many threads, bins and batches.
-fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Crew, &Target), expected: &'static [u32]) {
+fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Workers, &Target), expected: &'static [u32]) {
     let mut model = loom::model::Builder::new();
     model.preemption_bound = Some(2);
     model.max_branches = 50_000;
     // A bound for slow machines; what is left out then was not reached, and nothing else changes.
     model.max_duration = Some(std::time::Duration::from_secs(15));
     model.check(move || {
-        let crew = Arc::new(Crew::new(max_jobs));
+        let workers = Arc::new(Workers::new(max_jobs));
         let target = Arc::new(Target::new(bins));
-        crew.set_target(Some(target.clone()));
+        workers.set_target(Some(target.clone()));
         let workers: Vec<_> = (0..threads)
             .map(|number| {
-                let crew = crew.clone();
-                thread::spawn(move || crew.work(number))
+                let workers = workers.clone();
+                thread::spawn(move || workers.work(number))
             })
             .collect();
-        program(&crew, &target);
-        crew.flush();
+        program(&workers, &target);
+        workers.flush();
         assert!(!target.is_busy());
         for drawn in &target.drawn {
             assert_eq!(*drawn.lock().unwrap(), expected);
         }
-        crew.stop();
+        workers.stop();
         workers.into_iter().for_each(|worker| worker.join().unwrap());
     });
 }
 
 #[test]
 fn calls_and_clears_are_drawn_in_order() {
-    let program = |crew: &Crew, target: &Target| {
-        crew.set_suspended(false);
-        crew.submit(call(1), true);
-        clear(crew, target);
-        crew.submit(call(2), true);
-        crew.flush();
+    let program = |workers: &Workers, target: &Target| {
+        workers.set_suspended(false);
+        workers.submit(call(1), true);
+        clear(workers, target);
+        workers.submit(call(2), true);
+        workers.flush();
     };
     explore(1, 1, 2, program, &[1, 1001, 2]);
     explore(1, 2, 1, program, &[1, 1001, 2]);
@@ -224,15 +224,15 @@ fn calls_and_clears_are_drawn_in_order() {
 
 #[test]
 fn threads_may_sleep_and_wake_at_any_time() {
-    let program = |crew: &Crew, _: &Target| {
-        crew.submit(call(1), true);
-        crew.set_suspended(false);
-        crew.set_suspended(true);
-        crew.submit(call(2), true);
-        crew.flush();
-        crew.set_suspended(false);
-        crew.set_suspended(false);
-        crew.flush();
+    let program = |workers: &Workers, _: &Target| {
+        workers.submit(call(1), true);
+        workers.set_suspended(false);
+        workers.set_suspended(true);
+        workers.submit(call(2), true);
+        workers.flush();
+        workers.set_suspended(false);
+        workers.set_suspended(false);
+        workers.flush();
     };
     explore(1, 1, 1, program, &[1, 2]);
     explore(2, 1, 2, program, &[1, 2]);
@@ -240,37 +240,37 @@ fn threads_may_sleep_and_wake_at_any_time() {
 
 #[test]
 fn two_may_submit_and_flush() {
-    let program = |crew: &Crew, target: &Target| {
-        crew.set_suspended(false);
-        crew.submit(call(1), true);
-        crew.flush();
+    let program = |workers: &Workers, target: &Target| {
+        workers.set_suspended(false);
+        workers.submit(call(1), true);
+        workers.flush();
         // What was submitted before is drawn now, whatever others submit meanwhile.
         assert_eq!(*target.drawn[0].lock().unwrap(), [1]);
-        crew.submit(call(2), true);
-        clear(crew, target);
-        crew.flush();
+        workers.submit(call(2), true);
+        clear(workers, target);
+        workers.flush();
     };
     explore(1, 1, 1, program, &[1, 2, 1001]);
 }
 
 #[test]
 fn what_is_submitted_to_awake_threads_needs_no_other_call() {
-    let program = |crew: &Crew, target: &Target| {
-        crew.set_suspended(false);
-        crew.submit(small(1), true);
+    let program = |workers: &Workers, target: &Target| {
+        workers.set_suspended(false);
+        workers.submit(small(1), true);
         target.wait(target.bins());
-        crew.submit(small(2), true);
+        workers.submit(small(2), true);
         target.wait(2 * target.bins());
     };
     explore(1, 1, 2, program, &[1, 2]);
     explore(2, 1, 2, program, &[1, 2]);
     explore(1, 2, 2, program, &[1, 2]);
-    // Submitted before the threads wake, and to a crew with no room.
-    let program = |crew: &Crew, target: &Target| {
-        crew.submit(small(1), true);
-        crew.set_suspended(false);
-        crew.submit(small(2), true);
-        crew.submit_ready(|| Work::Triangles(pipeline::Kept(vec![3])));
+    // Submitted before the threads wake, and to a workers with no room.
+    let program = |workers: &Workers, target: &Target| {
+        workers.submit(small(1), true);
+        workers.set_suspended(false);
+        workers.submit(small(2), true);
+        workers.submit_ready(|| Work::Triangles(sink::BinnedTriangles(vec![3])));
         target.wait(3 * target.bins());
     };
     explore(1, 1, 1, program, &[1, 2, 3]);
@@ -279,15 +279,15 @@ fn what_is_submitted_to_awake_threads_needs_no_other_call() {
 
 #[test]
 fn a_thread_of_the_program_may_do_the_work() {
-    let program = |crew: &Crew, target: &Target| {
-        crew.submit(call(1), true);
-        crew.set_suspended(false);
-        crew.submit(small(2), true);
-        while crew.work_once() {}
+    let program = |workers: &Workers, target: &Target| {
+        workers.submit(call(1), true);
+        workers.set_suspended(false);
+        workers.submit(small(2), true);
+        while workers.work_once() {}
         // Other threads may be working on what is left.
         target.wait(2 * target.bins());
-        crew.flush();
-        assert!(crew.is_done() && !crew.work_once());
+        workers.flush();
+        assert!(workers.is_done() && !workers.work_once());
     };
     explore(0, 2, 2, program, &[1, 2]);
     explore(1, 1, 2, program, &[1, 2]);

@@ -2,25 +2,23 @@
 //! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
 //! other tile are taken in like triangles, from far to near.
 
-use super::{
-    Accurate, Buffer, FourLayer, Quick, Rule, SUB_TILES, ThreeLayer, TilePlace, TileRect, Touched, choose, load,
-};
-use crate::simd::{self, Job, Simd};
-use crate::{Implementation, UpdateRule};
+use super::rules::{Rule, with_rule};
+use super::tile::choose;
+use super::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
+use crate::simd::{self, Job, Level, Simd};
 
-/// Folds buffers into another, one after the other, inside of a rectangle of tiles that begins and ends with blocks or at the
-/// buffer's end. All are of the same size, checked by the caller.
+/// Folds buffers into a region of another, one after the other. All are of the same size, and the region begins and ends with
+/// blocks or at the buffer's end.
 ///
 /// # Safety
-/// Nobody else uses the rectangle's tiles of `into`, and nobody draws into the others.
-pub(crate) unsafe fn merge(implementation: Implementation, into: &Buffer, from: &[&Buffer], clip: TileRect) {
-    simd::run(implementation, Merge { into, from, clip });
+/// Nobody draws into the buffers that are folded in.
+pub(crate) unsafe fn merge(level: Level, into: Region<'_>, from: &[&Buffer]) {
+    simd::run(level, Merge { into, from });
 }
 
 struct Merge<'a> {
-    into: &'a Buffer,
+    into: Region<'a>,
     from: &'a [&'a Buffer],
-    clip: TileRect,
 }
 
 impl Job for Merge<'_> {
@@ -28,16 +26,12 @@ impl Job for Merge<'_> {
 
     #[inline(always)]
     fn run<T: Simd>(self, s: T) {
-        // A row of all of them, then the next: what is folded into stays in the first cache.
-        for y in (self.clip.y0..self.clip.y1).step_by(T::LANES / SUB_TILES) {
+        let (into, tiles) = (self.into.buffer(), self.into.tiles());
+        // Row by row, not buffer by buffer: the row that is folded into stays in the first-level cache.
+        for y in (tiles.y0..tiles.y1).step_by(T::LANES / SUB_TILES) {
             for from in self.from {
-                let row = Row { into: self.into, from, columns: self.clip.x0..self.clip.x1, y };
-                match self.into.rule() {
-                    UpdateRule::ThreeLayer => row.into_rule::<T, ThreeLayer>(s),
-                    UpdateRule::Quick => row.into_rule::<T, Quick>(s),
-                    UpdateRule::Accurate => row.into_rule::<T, Accurate>(s),
-                    UpdateRule::FourLayer => row.into_rule::<T, FourLayer>(s),
-                }
+                let row = Row { into, from, columns: tiles.x0..tiles.x1, y };
+                with_rule!(into.rule(), R => row.into_rule::<T, R>(s));
             }
         }
     }
@@ -54,12 +48,7 @@ struct Row<'a> {
 impl Row<'_> {
     #[inline(always)]
     fn into_rule<T: Simd, R: Rule>(self, s: T) {
-        match self.from.rule() {
-            UpdateRule::ThreeLayer => self.tiles::<T, R, ThreeLayer>(s),
-            UpdateRule::Quick => self.tiles::<T, R, Quick>(s),
-            UpdateRule::Accurate => self.tiles::<T, R, Accurate>(s),
-            UpdateRule::FourLayer => self.tiles::<T, R, FourLayer>(s),
-        }
+        with_rule!(self.from.rule(), O => self.tiles::<T, R, O>(s));
     }
 
     #[inline(always)]
@@ -71,7 +60,7 @@ impl Row<'_> {
             // the block's; the caller vouches for who else uses them; both were made for their rules.
             unsafe {
                 let other = TilePlace::new(from, x, y);
-                if Touched::of::<T>(other).none() {
+                if ClearState::of::<T>(other).none_drawn() {
                     continue;
                 }
                 let at = TilePlace::new(into, x, y);
@@ -96,7 +85,7 @@ impl Row<'_> {
                     }
                 }
                 R::store(s, at.planes, &planes);
-                s.store_least(at.least, at.pitch, planes.z0);
+                s.store_z_min(at.z_min, at.pitch, planes.z0);
             }
         }
     }

@@ -1,40 +1,38 @@
-//! The masked hierarchical depth buffer: where it lies in memory and how a tile of it is read.
+//! The masked hierarchical depth buffer: its memory, the update rules, the hierarchy, clearing and merging.
 //!
-//! The screen is cut into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i`
+//! The screen is divided into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i`
 //! of a vector is the sub-tile in column `i % 4` and row `i / 4`. Bit `8 * y + x` of a mask is the pixel
 //! in column `x` and row `y` of the sub-tile. In memory two tiles, one below the other, are a block: five planes of
-//! sixteen words (20 bytes a sub-tile) under the three-layer rule, seven (28 bytes) under the four-layer rule and three
-//! (12 bytes) under the others, plane after plane, the upper tile's eight words first. So a plane is one cache line, vectors of sixteen lanes take a
-//! block at once, and vectors of eight lanes half of it.
+//! sixteen words (20 bytes per sub-tile) under the three-layer rule, seven (28 bytes) under the four-layer rule and three
+//! (12 bytes) under the others, plane after plane, the upper tile's eight words first. So a plane is one cache line, vectors of
+//! sixteen lanes take a block at once, and vectors of eight lanes half of it.
 //!
-//! Beside them each tile has the least of its reference depths, so that a triangle or rectangle behind
-//! all of it is done with in one comparison. There, [`UNTOUCHED`] says that nothing was drawn since the
-//! last clear and that the planes hold old contents: a clear writes four bytes a tile and no more.
+//! Beside the planes, each tile has the least of its reference depths, `z_min`: depth is 1/w, so the least is the farthest. A
+//! triangle or rectangle behind all of a tile costs one comparison. The value [`CLEARED`] there says that nothing was drawn
+//! since the last clear and that the planes hold old contents: a clear writes four bytes per tile and no more. These values
+//! and those of the coarse level (see `hiz.rs`) are the hierarchy, HiZ.
 //!
-//! Sub-tiles that lie outside of the screen, in the tiles of its right and lower border, are infinitely
-//! near from the start: nothing draws into them, nothing waits for them. Of sub-tiles that lie partly outside,
-//! a triangle that covers any pixel inside covers all pixels outside.
+//! Sub-tiles outside the screen, in the tiles of its right and lower border, are infinitely near from the start, so that
+//! they never hold back `z_min`. In sub-tiles that lie partly outside, a triangle that covers any pixel inside covers all
+//! pixels outside.
 
-mod accurate;
-pub(crate) mod areas;
-mod four_layer;
+pub(crate) mod hiz;
 pub(crate) mod merge;
 pub(crate) mod pixels;
-mod quick;
-mod rule;
-#[cfg(test)]
-mod tests;
-mod three_layer;
+mod region;
+pub(crate) mod rules;
+mod tile;
 
-pub(crate) use accurate::Accurate;
-pub(crate) use four_layer::FourLayer;
-pub(crate) use quick::Quick;
-pub(crate) use rule::{Planes, Rule};
-pub(crate) use three_layer::ThreeLayer;
+pub(crate) use region::Region;
+pub(crate) use tile::{ClearState, TilePlace, TileRect, load};
 
 use crate::allocator::AlignedWords;
-use crate::simd::{MAX_LANES, Simd, store_relaxed};
+use crate::simd::MAX_LANES;
 use crate::{Allocator, Error, ScissorRect, UpdateRule};
+use rules::{Rule, with_rule};
+
+/// The largest width and height of a buffer, in pixels.
+pub(crate) const MAX_SIZE: u32 = 16_384;
 
 pub(crate) const TILE_WIDTH: u32 = 32;
 pub(crate) const TILE_HEIGHT: u32 = 8;
@@ -45,19 +43,10 @@ pub(crate) const SUB_TILES: usize = 8;
 /// Words of a plane of a block, which is two tiles.
 pub(crate) const BLOCK: usize = 2 * SUB_TILES;
 
-/// The least depth of a tile into which nothing was drawn since the last clear.
-pub(crate) const UNTOUCHED: f32 = -1.0;
+/// `z_min` of a tile into which nothing was drawn since the last clear.
+pub(crate) const CLEARED: f32 = -1.0;
 /// The reference depth of sub-tiles outside of the screen.
 const OUTSIDE: f32 = f32::MAX;
-
-/// A rectangle of tiles, the second corner outside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TileRect {
-    pub x0: u32,
-    pub y0: u32,
-    pub x1: u32,
-    pub y1: u32,
-}
 
 pub(crate) struct Buffer {
     width: u32,
@@ -67,16 +56,17 @@ pub(crate) struct Buffer {
     rule: UpdateRule,
     statistics: bool,
     planes: AlignedWords,
-    /// The least depths of the tiles, then those of the areas (see `areas.rs`), with room for a vector after each.
-    least: AlignedWords,
-    areas_w: u32,
-    first_area: usize,
-    /// For the blocks that the screen's edge cuts: which pixels of each sub-tile are outside.
+    /// `z_min` of the tiles, then of the coarse level's cells, with room for a vector after each; then a count, see
+    /// [`Buffer::since_refresh`].
+    hiz: AlignedWords,
+    coarse_w: u32,
+    first_coarse: usize,
+    /// For the blocks that the screen's edge crosses: which pixels of each sub-tile are outside.
     /// First those of the right column, then of the lowest row, then of the corner.
-    border: [[u32; BLOCK]; 3],
-    /// The column of tiles and the row of blocks in which the screen's edge cuts sub-tiles, or none.
-    cut_column: u32,
-    cut_row: u32,
+    outside: [[u32; BLOCK]; 3],
+    /// The column of tiles and the row of blocks in which the screen's edge crosses sub-tiles, or none.
+    edge_column: u32,
+    edge_row: u32,
 }
 
 impl Buffer {
@@ -92,8 +82,8 @@ impl Buffer {
         let tiles = tiles_w as usize * tiles_h.next_multiple_of(2) as usize;
         let right = width - (tiles_w - 1) * TILE_WIDTH;
         let bottom = height - (tiles_h - 1) / 2 * BLOCK_HEIGHT;
-        let (areas_w, areas_h) = areas::counts(tiles_w, tiles_h);
-        let first_area = tiles + MAX_LANES;
+        let (coarse_w, coarse_h) = hiz::counts(tiles_w, tiles_h);
+        let first_coarse = tiles + MAX_LANES;
         let mut buffer = Self {
             width,
             height,
@@ -102,12 +92,12 @@ impl Buffer {
             rule,
             statistics,
             planes: AlignedWords::new(tiles * plane_count(rule) * SUB_TILES, allocator)?,
-            least: AlignedWords::new(first_area + areas_w as usize * areas_h as usize + MAX_LANES + 1, allocator)?,
-            areas_w,
-            first_area,
-            border: [outside(right, BLOCK_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
-            cut_column: if width.is_multiple_of(8) { u32::MAX } else { tiles_w - 1 },
-            cut_row: if height.is_multiple_of(4) { u32::MAX } else { (tiles_h - 1) / 2 },
+            hiz: AlignedWords::new(first_coarse + coarse_w as usize * coarse_h as usize + MAX_LANES + 1, allocator)?,
+            coarse_w,
+            first_coarse,
+            outside: [outside(right, BLOCK_HEIGHT), outside(TILE_WIDTH, bottom), outside(right, bottom)],
+            edge_column: if width.is_multiple_of(8) { u32::MAX } else { tiles_w - 1 },
+            edge_row: if height.is_multiple_of(4) { u32::MAX } else { (tiles_h - 1) / 2 },
         };
         buffer.clear();
         Ok(buffer)
@@ -119,6 +109,12 @@ impl Buffer {
 
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// Width and height, in pixels.
+    #[inline(always)]
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
     }
 
     pub fn tiles_w(&self) -> u32 {
@@ -141,28 +137,12 @@ impl Buffer {
 
     pub fn clear(&mut self) {
         // SAFETY: `&mut self`, and the array is that long; any bits are an f32.
-        let least = unsafe {
-            core::slice::from_raw_parts_mut(self.least.as_ptr().cast::<core::mem::MaybeUninit<f32>>(), self.least.len())
+        let z_min = unsafe {
+            core::slice::from_raw_parts_mut(self.hiz.as_ptr().cast::<core::mem::MaybeUninit<f32>>(), self.hiz.len())
         };
-        least.fill(core::mem::MaybeUninit::new(UNTOUCHED));
-        // SAFETY: `&mut self`, and a word of the buffer.
-        unsafe { self.drawn().write(0) };
-    }
-
-    /// Clears a rectangle of tiles that begins with an area and ends with one or at the buffer's end.
-    ///
-    /// # Safety
-    /// Nobody else writes its tiles and areas; others may read least depths as words.
-    pub unsafe fn clear_tiles(&self, clip: TileRect) {
-        // Blocks are whole: the lower tiles of the last may lie below the screen.
-        for y in clip.y0..clip.y1.next_multiple_of(2) {
-            for x in clip.x0..clip.x1 {
-                // SAFETY: the caller's contract.
-                unsafe { store_relaxed(self.least_of(x, y), UNTOUCHED) };
-            }
-        }
-        // SAFETY: the caller's contract.
-        unsafe { areas::clear(self, clip) };
+        z_min.fill(core::mem::MaybeUninit::new(CLEARED));
+        // SAFETY: `&mut self`.
+        unsafe { self.since_refresh().write(0) };
     }
 
     pub fn bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
@@ -202,81 +182,76 @@ impl Buffer {
         self.planes.as_ptr().wrapping_add(words)
     }
 
-    /// The least depths of the tiles, row by row, for whole blocks, and room for a vector more.
+    /// `z_min` of the tiles, row by row, for whole blocks, and room for a vector more.
     #[inline(always)]
-    pub fn least(&self) -> *mut f32 {
-        self.least.as_ptr().cast()
+    pub fn z_min(&self) -> *mut f32 {
+        self.hiz.as_ptr().cast()
     }
 
-    /// The least depths of the areas, row by row, and room for a vector more.
+    /// `z_min` of the coarse level's cells, row by row, and room for a vector more.
     #[inline(always)]
-    pub fn areas(&self) -> *mut f32 {
-        self.least().wrapping_add(self.first_area)
+    pub fn coarse(&self) -> *mut f32 {
+        self.z_min().wrapping_add(self.first_coarse)
     }
 
-    /// How many tiles were drawn into since the areas were brought up to date.
+    /// How many tiles were drawn into since the coarse level was refreshed.
     #[inline(always)]
-    pub fn drawn(&self) -> *mut u32 {
-        self.least.as_ptr().wrapping_add(self.least.len() - 1)
+    fn since_refresh(&self) -> *mut u32 {
+        self.hiz.as_ptr().wrapping_add(self.hiz.len() - 1)
     }
 
-    /// Areas in a row.
+    /// Cells of the coarse level in a row.
     #[inline(always)]
-    pub fn areas_w(&self) -> u32 {
-        self.areas_w
+    pub fn coarse_w(&self) -> u32 {
+        self.coarse_w
     }
 
-    /// The number of the first area, counted from the first tile's least depth on.
+    /// The number of the coarse level's first cell, counted from the first tile's `z_min` on.
     #[inline(always)]
-    pub fn first_area(&self) -> usize {
-        self.first_area
+    pub fn first_coarse(&self) -> usize {
+        self.first_coarse
     }
 
-    /// The least depth of tile (x, y).
+    /// `z_min` of tile (x, y).
     #[inline(always)]
-    pub fn least_of(&self, x: u32, y: u32) -> *mut f32 {
-        self.least().wrapping_add(y as usize * self.tiles_w as usize + x as usize)
+    pub fn z_min_of(&self, x: u32, y: u32) -> *mut f32 {
+        self.z_min().wrapping_add(y as usize * self.tiles_w as usize + x as usize)
     }
 
-    /// The pixels that lie outside of the screen in tile (x, y) and, where y is even, in the tile below, eight words
-    /// each; if there are any in their block.
+    /// The pixels outside the screen in tile (x, y) and, where y is even, in the tile below, eight words each; `None` where
+    /// their block has none.
     #[inline(always)]
-    pub fn border(&self, x: u32, y: u32) -> Option<*const u32> {
+    pub fn outside_mask(&self, x: u32, y: u32) -> Option<*const u32> {
         let right = x + 1 == self.tiles_w && !self.width.is_multiple_of(TILE_WIDTH);
         let bottom = y / 2 == (self.tiles_h - 1) / 2 && !self.height.is_multiple_of(BLOCK_HEIGHT);
-        let border = match (right, bottom) {
+        let outside = match (right, bottom) {
             (false, false) => return None,
-            (true, false) => &self.border[0],
-            (false, true) => &self.border[1],
-            (true, true) => &self.border[2],
+            (true, false) => &self.outside[0],
+            (false, true) => &self.outside[1],
+            (true, true) => &self.outside[2],
         };
-        Some(border.as_ptr().wrapping_add((y % 2) as usize * SUB_TILES))
+        Some(outside.as_ptr().wrapping_add((y % 2) as usize * SUB_TILES))
     }
 
-    /// Does the screen's edge cut through sub-tiles anywhere?
+    /// Whether the screen's edge crosses sub-tiles anywhere.
     #[inline(always)]
-    pub fn cuts(&self) -> bool {
-        self.cut_column != u32::MAX || self.cut_row != u32::MAX
+    pub fn has_edge_masks(&self) -> bool {
+        self.edge_column != u32::MAX || self.edge_row != u32::MAX
     }
 
-    /// The same, if the screen's edge cuts through sub-tiles there.
+    /// [`Self::outside_mask`], only where the screen's edge crosses sub-tiles.
     #[inline(always)]
-    pub fn cut(&self, x: u32, y: u32) -> Option<*const u32> {
-        let right = x == self.cut_column;
-        let bottom = y / 2 == self.cut_row;
-        if right || bottom { self.border(x, y) } else { None }
+    pub fn edge_mask(&self, x: u32, y: u32) -> Option<*const u32> {
+        let right = x == self.edge_column;
+        let bottom = y / 2 == self.edge_row;
+        if right || bottom { self.outside_mask(x, y) } else { None }
     }
 }
 
 /// Words of a sub-tile: depths and masks.
 #[inline(always)]
-pub(crate) const fn plane_count(rule: UpdateRule) -> usize {
-    match rule {
-        UpdateRule::ThreeLayer => ThreeLayer::PLANES,
-        UpdateRule::FourLayer => FourLayer::PLANES,
-        UpdateRule::Quick => Quick::PLANES,
-        UpdateRule::Accurate => Accurate::PLANES,
-    }
+fn plane_count(rule: UpdateRule) -> usize {
+    with_rule!(rule, R => R::PLANES)
 }
 
 /// The pixels of a block that are not among its first `width` columns and `height` rows.
@@ -285,104 +260,4 @@ fn outside(width: u32, height: u32) -> [u32; BLOCK] {
         let (left, top) = (lane as u32 % 4 * 8, lane as u32 / 4 * 4);
         (0..32).filter(|bit| left + bit % 8 >= width || top + bit / 8 >= height).map(|bit| 1 << bit).sum()
     })
-}
-
-/// The contents of tiles into which nothing was drawn, and where their border is.
-///
-/// # Safety
-/// The border can be read for a vector.
-#[inline(always)]
-unsafe fn fresh<S: Simd, R: Rule>(s: S, border: Option<*const u32>) -> Planes<S> {
-    let mut planes = R::empty(s);
-    if let Some(outside) = border {
-        // SAFETY: the caller's contract.
-        let all_outside = s.eq_i(unsafe { s.load_i(outside) }, s.i(-1));
-        planes.z0 = s.select(all_outside, s.f(OUTSIDE), planes.z0);
-    }
-    planes
-}
-
-/// Where a tile is: its column, its planes, its least depth, and how far it is to that of the tile below. Its row is
-/// seldom asked for, and goes as a function.
-#[derive(Clone, Copy)]
-pub(crate) struct TilePlace {
-    pub x: u32,
-    pub planes: *mut u32,
-    pub least: *mut f32,
-    pub pitch: usize,
-}
-
-impl TilePlace {
-    #[inline(always)]
-    pub fn new(buffer: &Buffer, x: u32, y: u32) -> Self {
-        let pitch = buffer.tiles_w() as usize;
-        Self { x, planes: buffer.tile(x, y), least: buffer.least_of(x, y), pitch }
-    }
-}
-
-/// Whether something was drawn since the last clear into a tile, and, for vectors of sixteen lanes, into the tile below
-/// (else it is the same again): the bits of their least depths, of which only [`UNTOUCHED`] is negative.
-#[derive(Clone, Copy)]
-pub(crate) struct Touched {
-    upper: i32,
-    lower: i32,
-}
-
-impl Touched {
-    /// # Safety
-    /// It is a tile of the buffer, into which nobody draws.
-    #[inline(always)]
-    pub unsafe fn of<S: Simd>(at: TilePlace) -> Self {
-        const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
-        let below = if S::LANES == SUB_TILES { 0 } else { at.pitch };
-        // SAFETY: the caller's contract; blocks are whole.
-        unsafe { Self { upper: (*at.least).to_bits() as i32, lower: (*at.least.add(below)).to_bits() as i32 } }
-    }
-
-    #[inline(always)]
-    pub fn all(self) -> bool {
-        self.upper | self.lower >= 0
-    }
-
-    #[inline(always)]
-    pub fn none(self) -> bool {
-        self.upper & self.lower < 0
-    }
-}
-
-/// What is in a tile, or, for a vector of sixteen lanes and an even row, in it and in the tile below.
-///
-/// # Safety
-/// It is a tile of the buffer, which was made for the rule `R` and into which nobody draws.
-#[inline(always)]
-pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace, row: impl Fn() -> u32) -> Planes<S> {
-    // SAFETY: the caller's contract; blocks are whole.
-    unsafe {
-        let touched = Touched::of::<S>(at);
-        let planes = R::load(s, at.planes);
-        if touched.all() {
-            return planes;
-        }
-        let untouched = fresh::<S, R>(s, buffer.border(at.x, row()));
-        if touched.none() {
-            return untouched;
-        }
-        let first = s.first(SUB_TILES);
-        let lanes = if touched.lower < 0 { first } else { s.and_not_m(first, s.first(S::LANES)) };
-        choose(s, lanes, &planes, &untouched)
-    }
-}
-
-/// The lanes in `m` of one, the others of the other.
-#[inline(always)]
-fn choose<S: Simd>(s: S, m: S::M, a: &Planes<S>, b: &Planes<S>) -> Planes<S> {
-    Planes {
-        z0: s.select(m, a.z0, b.z0),
-        z_near: s.select(m, a.z_near, b.z_near),
-        z_mid: s.select(m, a.z_mid, b.z_mid),
-        z_far: s.select(m, a.z_far, b.z_far),
-        near: s.select_i(m, a.near, b.near),
-        mid: s.select_i(m, a.mid, b.mid),
-        far: s.select_i(m, a.far, b.far),
-    }
 }

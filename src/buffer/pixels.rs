@@ -1,28 +1,17 @@
 //! The depth of every pixel, for looking at: what the buffer knows at least.
 
-use super::{Accurate, BLOCK, Buffer, FourLayer, Quick, Rule, TILE_HEIGHT, TILE_WIDTH, ThreeLayer, UNTOUCHED};
-use crate::UpdateRule;
+use super::rules::{Rule, with_rule};
+use super::{BLOCK, Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH};
 
 /// The depth of a pixel into which nothing was drawn.
 const NOTHING: f32 = -1.0;
 
 /// Writes width times height depths.
 pub(crate) fn write(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
-    const { assert!(ThreeLayer::PLANES == 5 && Quick::PLANES == 3 && Accurate::PLANES == 3 && FourLayer::PLANES == 7) }
-    match buffer.rule() {
-        UpdateRule::ThreeLayer => write_layers(buffer, depth, flip_y, [(3, 1), (4, 2)]),
-        UpdateRule::Quick | UpdateRule::Accurate => write_layers(buffer, depth, flip_y, [(2, 1)]),
-        UpdateRule::FourLayer => write_layers(buffer, depth, flip_y, [(4, 1), (5, 2), (6, 3)]),
-    }
+    with_rule!(buffer.rule(), R => write_layers::<R>(buffer, depth, flip_y));
 }
 
-/// The same, where the planes of each layer's mask and depth are these; that of the reference depth is the first.
-fn write_layers<const LAYERS: usize>(
-    buffer: &Buffer,
-    depth: &mut [f32],
-    flip_y: bool,
-    planes: [(usize, usize); LAYERS],
-) {
+fn write_layers<R: Rule>(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
     let (width, height) = (buffer.width() as usize, buffer.height() as usize);
     assert_eq!(depth.len(), width * height);
     for (row, line) in depth.chunks_exact_mut(width).enumerate() {
@@ -32,7 +21,7 @@ fn write_layers<const LAYERS: usize>(
             let x = (column / (TILE_WIDTH as usize / 8)) as u32;
             let lane = row % TILE_HEIGHT as usize / 4 * 4 + column % 4;
             // SAFETY: it is a tile of the buffer, and nobody draws while that is borrowed.
-            if unsafe { *buffer.least_of(x, y) } == UNTOUCHED {
+            if unsafe { *buffer.z_min_of(x, y) } == CLEARED {
                 pixels.fill(NOTHING);
                 continue;
             }
@@ -40,13 +29,12 @@ fn write_layers<const LAYERS: usize>(
             // a sub-tile of it.
             let word = |plane: usize| unsafe { *buffer.tile(x, y).add(plane * BLOCK + lane) };
             let z0 = f32::from_bits(word(0));
-            let layers = planes.map(|(mask, z)| (word(mask), f32::from_bits(word(z))));
             for (x, pixel) in pixels.iter_mut().enumerate() {
                 let bit = 1 << (row % 4 * 8 + x);
                 let mut z = z0;
-                for (mask, z_layer) in layers {
-                    if mask & bit != 0 {
-                        z = z.max(z_layer);
+                for &(mask, z_layer) in R::LAYER_PLANES {
+                    if word(mask) & bit != 0 {
+                        z = z.max(f32::from_bits(word(z_layer)));
                     }
                 }
                 *pixel = if z > 0.0 { z } else { NOTHING };

@@ -8,7 +8,7 @@ use super::pointers::{check_out, object, slice, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
-use crate::pipeline::Mesh;
+use crate::source::Mesh;
 use crate::{DrawOptions, Error, MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
 /// No answer is known, in recordings.
@@ -148,9 +148,9 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
             MOC_RESULT_UNKNOWN => None,
             result => Some(types::culling_result(result)?),
         };
-        let mesh = Mesh { vertices: mesh.vertices, triangles: mesh.triangles, options: &mesh.options };
         // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        unsafe { moc.recorder().render_triangles(result, &mesh) };
+        let mesh = unsafe { Mesh::new(mesh.vertices, mesh.triangles, &mesh.options) };
+        moc.recorder().render_triangles(result, &mesh);
         Ok(())
     })
 }

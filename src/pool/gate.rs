@@ -6,14 +6,14 @@
 use core::ptr::NonNull;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use super::crew::Crew;
 use super::target::{Bins, Target};
+use super::workers::Workers;
 use crate::attachment::{Attachment, Pool};
-use crate::pipeline::Mesh;
+use crate::source::Mesh;
 use crate::{CullingResult, Error, MaskedOcclusionCulling};
 
 pub(super) struct Gate {
-    pub crew: Arc<Crew>,
+    pub workers: Arc<Workers>,
     bins: Bins,
     /// Read-locked to submit or query, write-locked to exchange the target.
     target: RwLock<Option<Arc<Target>>>,
@@ -25,8 +25,8 @@ pub(super) struct Gate {
 pub(super) type Pass<'a> = RwLockReadGuard<'a, Option<Arc<Target>>>;
 
 impl Gate {
-    pub fn new(crew: Arc<Crew>, bins: Bins) -> Self {
-        Self { crew, bins, target: RwLock::new(None), recording: Mutex::new(()) }
+    pub fn new(workers: Arc<Workers>, bins: Bins) -> Self {
+        Self { workers, bins, target: RwLock::new(None), recording: Mutex::new(()) }
     }
 
     /// Draws into this object from now on, or into none, once what was submitted before is drawn. True: the pool owns it.
@@ -41,7 +41,7 @@ impl Gate {
         moc: Option<(NonNull<MaskedOcclusionCulling>, bool)>,
     ) -> Result<(), Error> {
         let mut gate = self.shut();
-        self.crew.flush();
+        self.workers.flush();
         let new = moc.map(|(moc, owned)| {
             // SAFETY: the caller's contract.
             Arc::new(unsafe { Target::new(moc, owned, self.bins) })
@@ -53,7 +53,7 @@ impl Gate {
             }
             detach(&gate);
         }
-        self.crew.set_target(new.clone());
+        self.workers.set_target(new.clone());
         *gate = new;
         Ok(())
     }
@@ -64,17 +64,17 @@ impl Gate {
         if !gate.as_ref()?.is_owned() {
             return None;
         }
-        self.crew.flush();
-        self.crew.set_target(None);
+        self.workers.flush();
+        self.workers.set_target(None);
         Arc::into_inner(gate.take()?)?.into_owned()
     }
 
     /// Flushes, and detaches the object.
     pub fn close(&self) {
         let mut gate = self.shut();
-        self.crew.flush();
+        self.workers.flush();
         detach(&gate);
-        self.crew.set_target(None);
+        self.workers.set_target(None);
         *gate = None;
     }
 
@@ -82,7 +82,7 @@ impl Gate {
     /// queries meanwhile.
     pub fn resize(&self, change: impl FnOnce(&mut MaskedOcclusionCulling) -> Result<(), Error>) -> Result<(), Error> {
         let mut gate = self.shut();
-        self.crew.flush();
+        self.workers.flush();
         let target = gate.as_ref().ok_or(Error::NoBuffer)?;
         // SAFETY: nothing is in flight, and no thread submits or queries while the gate is shut.
         change(unsafe { &mut *target.pointer().as_ptr() })?;
@@ -92,12 +92,12 @@ impl Gate {
 
     /// Rebuilds the bins. Nothing may be in flight.
     fn cut_again(&self, gate: &mut Option<Arc<Target>>) {
-        self.crew.set_target(None);
+        self.workers.set_target(None);
         // No other reference exists: threads drop theirs before they report a task as done.
         if let Some(target) = gate.take().and_then(Arc::into_inner) {
             *gate = Some(Arc::new(target.resized(self.bins)));
         }
-        self.crew.set_target(gate.clone());
+        self.workers.set_target(gate.clone());
     }
 
     /// The target, with bins that fit its object: after a flush the owner may have changed the resolution.
@@ -109,7 +109,7 @@ impl Gate {
             }
             drop(pass);
             let mut gate = self.shut();
-            self.crew.flush();
+            self.workers.flush();
             self.cut_again(&mut gate);
         }
     }
@@ -139,24 +139,19 @@ impl Gate {
         let recording = self.recording(target);
         // Checked before the query: an answer given while work is in flight depends on timing, so a replay cannot be
         // compared with it.
-        let settled = recording.is_some() && self.crew.is_done();
+        let settled = recording.is_some() && self.workers.is_done();
         let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
         target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
         Ok(result)
     }
 
     /// Tests a mesh against what has been drawn so far.
-    ///
-    /// # Safety
-    /// Every vertex from the lowest to the highest index can be read.
-    pub unsafe fn mesh(&self, target: &Target, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+    pub fn mesh(&self, target: &Target, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
         let recording = self.recording(target);
         // As in `rect`.
-        let settled = recording.is_some() && self.crew.is_done();
-        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        let result = target.query(target.all_tiles(), |moc| unsafe { moc.ask_triangles(mesh) })?;
-        // SAFETY: as above.
-        unsafe { target.moc().recorder().test_triangles(settled.then_some(result), mesh) };
+        let settled = recording.is_some() && self.workers.is_done();
+        let result = target.query(target.all_tiles(), |moc| moc.ask_triangles(mesh))?;
+        target.moc().recorder().test_triangles(settled.then_some(result), mesh);
         Ok(result)
     }
 
@@ -182,7 +177,7 @@ fn detach(target: &Option<Arc<Target>>) {
 
 impl Pool for Gate {
     fn flush(&self) {
-        self.crew.flush();
+        self.workers.flush();
     }
 
     fn forget(&self, attachment: &Attachment) {
@@ -190,8 +185,8 @@ impl Pool for Gate {
         if !gate.as_ref().is_some_and(|target| core::ptr::eq(target.moc().attachment(), attachment)) {
             return;
         }
-        self.crew.flush();
-        self.crew.set_target(None);
+        self.workers.flush();
+        self.workers.set_target(None);
         *gate = None;
     }
 
@@ -199,8 +194,7 @@ impl Pool for Gate {
         self.with_object_of(attachment, |target| self.rect(target, edges, w_min))
     }
 
-    unsafe fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>> {
-        // SAFETY: the caller's contract.
-        self.with_object_of(attachment, |target| unsafe { self.mesh(target, mesh) })
+    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>> {
+        self.with_object_of(attachment, |target| self.mesh(target, mesh))
     }
 }

@@ -1,39 +1,39 @@
-//! Cuts a buffer into bins: rectangles of whole areas (128x64 pixels), so that each bin keeps its areas up to date by itself and
-//! no two bins share a block.
+//! Divides a buffer into bins: rectangles of whole coarse HiZ cells (128x64 pixels), so that each bin refreshes its cells by
+//! itself and no two bins share a block.
 
 use crate::buffer::TileRect;
-use crate::buffer::areas::{AREA_TILES_H, AREA_TILES_W};
-use crate::pipeline::Cuts;
+use crate::buffer::hiz::{COARSE_TILES_H, COARSE_TILES_W};
+use crate::sink::BinBounds;
 
 /// The bins, row by row.
 pub(super) struct Grid {
     /// Where columns and rows begin, in tiles, and where the last ends.
     columns: Vec<u32>,
     rows: Vec<u32>,
-    cuts: Cuts,
+    bounds: BinBounds,
 }
 
 impl Grid {
-    /// As equal as areas allow; as many as `bins_w * bins_h`, but not more than `most` or than areas.
+    /// As equal as cells allow; as many as `bins_w * bins_h`, but not more than `most` or than there are cells.
     ///
-    /// Rows first: the least depths of a row of tiles lie side by side, and threads that draw left and right of each other
-    /// would write to the same cache lines.
+    /// Rows first: `z_min` of a row of tiles is contiguous, and threads that draw left and right of each other would write to
+    /// the same cache lines.
     pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32, most: u32) -> Self {
         let bins = bins_w.max(1).saturating_mul(bins_h.max(1)).min(most.max(1));
-        let rows = tiles.y1.div_ceil(AREA_TILES_H);
+        let rows = tiles.y1.div_ceil(COARSE_TILES_H);
         let (bins_w, bins_h) = (bins / bins.min(rows), bins.min(rows));
-        let cut = |tiles: u32, bins: u32, area: u32| -> Vec<u32> {
-            let areas = tiles.div_ceil(area);
-            let bins = bins.clamp(1, areas);
-            let begin = |k: u32| (u64::from(k) * u64::from(areas) / u64::from(bins)) as u32 * area;
+        let cut = |tiles: u32, bins: u32, cell: u32| -> Vec<u32> {
+            let cells = tiles.div_ceil(cell);
+            let bins = bins.clamp(1, cells);
+            let begin = |k: u32| (u64::from(k) * u64::from(cells) / u64::from(bins)) as u32 * cell;
             (0..bins).map(begin).chain([tiles]).collect()
         };
-        let (columns, rows) = (cut(tiles.x1, bins_w, AREA_TILES_W), cut(tiles.y1, bins_h, AREA_TILES_H));
-        Self { cuts: Cuts::new(&columns, &rows), columns, rows }
+        let (columns, rows) = (cut(tiles.x1, bins_w, COARSE_TILES_W), cut(tiles.y1, bins_h, COARSE_TILES_H));
+        Self { bounds: BinBounds::new(&columns, &rows), columns, rows }
     }
 
-    pub fn cuts(&self) -> &Cuts {
-        &self.cuts
+    pub fn bounds(&self) -> &BinBounds {
+        &self.bounds
     }
 
     pub fn len(&self) -> usize {
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bins_cover_every_tile_once_and_begin_with_areas() {
+    fn bins_cover_every_tile_once_and_begin_with_coarse_cells() {
         for (w, h) in [(1, 1), (60, 135), (512, 2048), (5, 9), (4, 8)] {
             for (bins_w, bins_h, most) in
                 [(1, 1, 9), (4, 4, 16), (4, 4, 8), (3, 7, 1), (u32::MAX, u32::MAX, 100), (0, 0, 4)]
@@ -77,7 +77,7 @@ mod tests {
                 let mut seen = vec![0; (w * h) as usize];
                 for bin in 0..grid.len() {
                     let t = grid.tiles(bin);
-                    assert!(t.x0.is_multiple_of(AREA_TILES_W) && t.y0.is_multiple_of(AREA_TILES_H));
+                    assert!(t.x0.is_multiple_of(COARSE_TILES_W) && t.y0.is_multiple_of(COARSE_TILES_H));
                     assert!(t.x0 < t.x1 && t.y0 < t.y1);
                     for (x, y) in (t.y0..t.y1).flat_map(|y| (t.x0..t.x1).map(move |x| (x, y))) {
                         seen[(y * w + x) as usize] += 1;

@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! render ──> batches    calls, in the order of submission
-//!            keep       a batch is projected and culled by one thread (see `pipeline/kept.rs`)
-//!            draw       each bin, a piece of the screen, draws the batches in order, one thread at a time
+//!            bin        a batch is projected and culled by one thread (see `sink/bin.rs`)
+//!            draw       each bin, a rectangle of the screen, draws the batches in order, one thread at a time
 //! ```
 //!
 //! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
-//! the number of threads and bins. `schedule.rs` decides who does what, `crew.rs` has the threads, `processor.rs` moves one
+//! the number of threads and bins. `schedule.rs` decides who does what, `workers.rs` has the threads, `processor.rs` moves one
 //! that is woken on its waker's processor, `gate.rs` guards access to the object, `target.rs` has the bins and their locks,
 //! `grid.rs` the bins' rectangles on the screen.
 //!
-//! A call's arrays are read only to bin it ("keep"). At most `max_jobs` calls are not yet binned when a call returns, so a
+//! A call's arrays are read only to bin it. At most `max_jobs` calls are not yet binned when a call returns, so a
 //! program may rotate among `max_jobs` + 1 arrays without a flush. Whether binned calls are drawn yet is visible only to
 //! queries.
 //!
@@ -20,7 +20,6 @@
 //! such a caller to do, it spins for 20 microseconds before it sleeps, as worker threads do. Threads beyond the processors are
 //! not started: they would only take turns with the others, and interrupt one that holds a bin.
 
-mod crew;
 mod gate;
 mod grid;
 mod processor;
@@ -30,6 +29,7 @@ mod sync;
 mod target;
 #[cfg(test)]
 mod tests;
+mod workers;
 
 use core::marker::PhantomData;
 use core::ptr::NonNull;
@@ -38,13 +38,13 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
 use crate::float_environment::in_default_environment;
-use crate::pipeline::Mesh;
+use crate::source::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, VertexLayout, Vertices};
-use crew::Crew;
 use gate::Gate;
 pub use settings::{ThreadStart, ThreadpoolSettings};
 use target::{Bins, Call, Shared, Work};
+use workers::Workers;
 
 /// A larger number is a mistake.
 const MAX_THREADS: u32 = 1024;
@@ -125,19 +125,19 @@ impl CullingThreadpool {
         };
         let threads = settings.threads.min(processors.saturating_sub(1).max(1));
         let most = threads.saturating_add(settings.external_threads).saturating_mul(BINS_PER_THREAD);
-        let crew = Arc::new(Crew::new(max_jobs as usize));
-        let gate = Gate::new(crew.clone(), Bins { wide: bins_w, high: bins_h, most });
+        let workers = Arc::new(Workers::new(max_jobs as usize));
+        let gate = Gate::new(workers.clone(), Bins { wide: bins_w, high: bins_h, most });
         let mut pool = Self { gate: Arc::new(gate), threads: Vec::new() };
         let started = settings.on_thread_start.map(Arc::new);
         for number in 0..threads {
-            let (crew, started) = (crew.clone(), started.clone());
+            let (workers, started) = (workers.clone(), started.clone());
             let work = move || {
                 if let Some(started) = &started {
                     // If the callback panics, the thread works all the same.
                     let _ = catch_unwind(AssertUnwindSafe(|| started(number)));
                 }
                 // The callback may have changed the environment.
-                in_default_environment(|| crew.work(number as usize));
+                in_default_environment(|| workers.work(number as usize));
             };
             let name = thread_name(&settings.thread_name, number);
             // Those that did start end with the pool.
@@ -162,30 +162,30 @@ impl CullingThreadpool {
 
     /// Lets the threads work. A second time changes nothing.
     pub fn wake_threads(&self) {
-        self.gate.crew.set_suspended(false);
+        self.gate.workers.set_suspended(false);
     }
 
     /// Draws what was submitted, then puts the threads to sleep. Work submitted later waits until they are woken, or until a
     /// call flushes or does the work ([`Self::work_once`]).
     pub fn suspend_threads(&self) {
         self.flush();
-        self.gate.crew.set_suspended(true);
+        self.gate.workers.set_suspended(true);
     }
 
     /// Waits until everything that was submitted before is drawn.
     pub fn flush(&self) {
-        self.gate.crew.flush();
+        self.gate.workers.flush();
     }
 
     /// Does one piece of pending work on the calling thread and returns: for jobs of an engine's own job system, alongside the
     /// pool's threads or instead of them. False: nothing is pending that is not already being worked on.
     pub fn work_once(&self) -> bool {
-        self.gate.crew.work_once()
+        self.gate.workers.work_once()
     }
 
     /// Whether everything submitted is drawn. Calling [`Self::work_once`] in a loop until then is a flush that never sleeps.
     pub fn is_done(&self) -> bool {
-        self.gate.crew.is_done()
+        self.gate.workers.is_done()
     }
 
     /// Draws into this object from now on, which the pool owns until [`Self::take_buffer`]. One that it had is dropped, after
@@ -248,7 +248,7 @@ impl CullingThreadpool {
     pub fn clear_buffer(&self) -> Result<(), Error> {
         self.gate.with_buffer(|target| {
             let _recording = self.gate.recording(target);
-            self.gate.crew.do_now(|| Work::Clear(target.count_clear()));
+            self.gate.workers.do_now(|| Work::Clear(target.count_clear()));
             target.moc().recorder().clear_buffer();
             Ok(())
         })
@@ -291,7 +291,7 @@ impl CullingThreadpool {
         let (triangles, options) = (NonNull::<u32>::dangling().as_ptr().cast_const(), DrawOptions::default());
         // Without an object nothing is in flight.
         let _ = self.gate.with_buffer(|_| {
-            self.gate.crew.submit(Call { vertices, triangles, indices: 0, options, near: 0.0, clears: 0 }, true);
+            self.gate.workers.submit(Call { vertices, triangles, indices: 0, options, near: 0.0, clears: 0 }, true);
             Ok(())
         });
     }
@@ -314,14 +314,15 @@ impl CullingThreadpool {
                 let (part, later) = rest.split_at(rest.len().min(3 * CALL_TRIANGLES));
                 let (triangles, indices) = (part.as_ptr(), part.len());
                 let call = Call { vertices, triangles, indices, options: *options, near, clears: 0 };
-                self.gate.crew.submit(call, later.is_empty());
+                self.gate.workers.submit(call, later.is_empty());
                 rest = later;
                 if rest.is_empty() {
                     break;
                 }
             }
             // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-            unsafe { target.moc().recorder().render_triangles(None, &Mesh { vertices, triangles, options }) };
+            let mesh = unsafe { Mesh::new(vertices, triangles, options) };
+            target.moc().recorder().render_triangles(None, &mesh);
             Ok(())
         })
     }
@@ -341,7 +342,7 @@ impl CullingThreadpool {
             let others: Vec<&MaskedOcclusionCulling> = others.collect();
             target.moc().mergeable(&others)?;
             let others = others.into_iter().map(|other| Shared(NonNull::from(other))).collect();
-            self.gate.crew.submit_ready(|| Work::Merge(others));
+            self.gate.workers.submit_ready(|| Work::Merge(others));
             Ok(())
         })
     }
@@ -388,7 +389,8 @@ impl CullingThreadpool {
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
         // SAFETY: the caller's contract.
-        self.gate.with_buffer(|target| unsafe { self.gate.mesh(target, &Mesh { vertices, triangles, options }) })
+        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
+        self.gate.with_buffer(|target| self.gate.mesh(target, &mesh))
     }
 
     /// Looks at the object itself, which has a buffer.
@@ -437,7 +439,7 @@ impl Drop for CullingThreadpool {
     fn drop(&mut self) {
         // Detached here, so that the object may be dropped before or after the pool.
         self.gate.close();
-        self.gate.crew.stop();
+        self.gate.workers.stop();
         for thread in self.threads.drain(..) {
             // What a thread says when it ends in a panic, it has said already.
             let _ = thread.join();

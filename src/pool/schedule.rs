@@ -1,6 +1,6 @@
 //! Who may do what next: the order of a pool's work, and nothing else.
 //!
-//! Calls are gathered into batches. A batch is first kept (projected, by one thread), then drawn by every bin, a piece of the
+//! Calls are gathered into batches. A batch is first binned (projected, by one thread), then drawn by every bin, a part of the
 //! screen, and every bin draws the batches in the order in which they were submitted, one thread at a time. So each tile sees the
 //! same triangles in the same order as on one thread, whatever the threads do meanwhile.
 //!
@@ -15,10 +15,10 @@ pub(super) const BATCH_WEIGHT: usize = 2048;
 pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch that weighs so much is worth a thread's while.
 pub(super) const WORTHWHILE: usize = 512;
-/// So much may be ready that a thread's own bin did not draw, before the thread draws it instead of keeping more.
+/// So much may be ready that a thread's own bin did not draw, before the thread draws it instead of binning more.
 const LEAD: usize = 5 * BATCH_WEIGHT / 2;
 /// The same of a bin that another thread drew in last, whose tiles are in the cache of that one, or that nobody drew in yet.
-const STRANGERS_LEAD: usize = 2 * LEAD;
+const FOREIGN_BIN_LAG: usize = 2 * LEAD;
 /// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
 
@@ -28,8 +28,8 @@ pub(super) static BREAKS: core::sync::atomic::AtomicBool = core::sync::atomic::A
 
 /// What a thread is to do.
 pub(super) enum Task<C, W> {
-    /// Keep these calls, and say so by [`Schedule::kept`].
-    Keep { batch: u64, calls: Vec<C> },
+    /// Bin these calls, and report them with [`Schedule::binned`].
+    Bin { batch: u64, calls: Vec<C> },
     /// Draw these into the bin, in order, and say so by [`Schedule::drawn`].
     Draw { bin: usize, work: Vec<W> },
 }
@@ -37,7 +37,7 @@ pub(super) enum Task<C, W> {
 enum Stage<C, W> {
     /// Accepts calls while it is the last batch.
     Open(Vec<C>),
-    /// Somebody keeps it.
+    /// A thread is binning it.
     Taken,
     Ready(W),
 }
@@ -77,7 +77,7 @@ pub(super) struct Schedule<C, W> {
 }
 
 impl<C, W: Clone> Schedule<C, W> {
-    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be binned ("kept").
+    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be binned ("binned").
     pub fn new(bins: usize, max: usize) -> Self {
         let (first, open, ready) = (0, 0, 0);
         Self {
@@ -147,7 +147,7 @@ impl<C, W: Clone> Schedule<C, W> {
         self.batches.len() >= self.max
     }
 
-    /// Takes in what needs not be kept first.
+    /// Accepts work that need not be binned first.
     ///
     /// # Panics
     /// If it is full.
@@ -185,14 +185,14 @@ impl<C, W: Clone> Schedule<C, W> {
         let own = self.most_behind(|bin| bin.thread == thread);
         let any = self.most_behind(|_| true);
         let far = |bin: Option<usize>, lead: usize| bin.filter(|&k| self.is_behind(&self.bins[k], lead));
-        // Keeping goes ahead of drawing, but not far: what was drawn hides what is kept.
-        if let Some(bin) = far(own, LEAD).or(far(any, STRANGERS_LEAD)) {
+        // Binning goes ahead of drawing, but not far: what was drawn hides what is binned.
+        if let Some(bin) = far(own, LEAD).or(far(any, FOREIGN_BIN_LAG)) {
             return Some(self.claim_bin(bin, thread));
         }
         self.claim_batch(WORTHWHILE).or_else(|| own.or(any).map(|bin| self.claim_bin(bin, thread)))
     }
 
-    /// The first batch that nobody keeps, unless it is the last one and weighs less.
+    /// The first batch that no thread is binning, unless it is the last one and weighs less.
     fn claim_batch(&mut self, least: usize) -> Option<Task<C, W>> {
         let (end, most) = (self.in_flight().end, self.batch_calls());
         while self.open < end {
@@ -205,7 +205,7 @@ impl<C, W: Clone> Schedule<C, W> {
                 let calls = core::mem::take(calls);
                 batch.stage = Stage::Taken;
                 self.open += 1;
-                return Some(Task::Keep { batch: number, calls });
+                return Some(Task::Bin { batch: number, calls });
             }
             self.open += 1;
         }
@@ -250,13 +250,13 @@ impl<C, W: Clone> Schedule<C, W> {
 
     /// Would [`Self::claim`] find something?
     pub fn has_work(&self) -> bool {
-        let unkept = self.batches.range((self.open - self.first) as usize..);
-        let mut unkept = unkept.map(|batch| &batch.stage);
-        unkept.any(|stage| matches!(stage, Stage::Open(..))) || self.bins.iter().any(|bin| self.is_due(bin))
+        let unbinned = self.batches.range((self.open - self.first) as usize..);
+        let mut unbinned = unbinned.map(|batch| &batch.stage);
+        unbinned.any(|stage| matches!(stage, Stage::Open(..))) || self.bins.iter().any(|bin| self.is_due(bin))
     }
 
-    /// A batch was kept.
-    pub fn kept(&mut self, batch: u64, work: W) {
+    /// A batch was binned.
+    pub fn binned(&mut self, batch: u64, work: W) {
         self.batches[(batch - self.first) as usize].stage = Stage::Ready(work);
         self.find_ready();
     }
@@ -292,8 +292,8 @@ mod tests {
         let mut submitted = Vec::new();
         let mut done = Vec::new();
         let mut tasks: Vec<Task<u32, Vec<u32>>> = Vec::new();
-        // Whether each part is the last of its call, and whether it was kept.
-        let (mut ends, mut kept): (Vec<bool>, Vec<bool>) = Default::default();
+        // Whether each part is the last of its call, and whether it was binned.
+        let (mut ends, mut binned): (Vec<bool>, Vec<bool>) = Default::default();
         let parts = random.u32(0..200);
         while (submitted.len() as u32) < parts || !schedule.is_done() {
             let id = submitted.len() as u32;
@@ -303,20 +303,20 @@ mod tests {
                     schedule.submit_ready(vec![id]);
                     submitted.push(id);
                     ends.push(false);
-                    kept.push(true);
+                    binned.push(true);
                 }
             } else if submits {
                 let last = random.u8(0..4) != 0;
                 if schedule.submit(id, random.usize(0..2 * BATCH_WEIGHT), last).is_ok() {
                     submitted.push(id);
                     ends.push(last);
-                    kept.push(false);
+                    binned.push(false);
                 }
             }
             assert!(schedule.in_flight().end - schedule.in_flight().start <= max as u64);
-            let unkept = kept.iter().position(|&kept| !kept).unwrap_or(kept.len());
+            let unbinned = binned.iter().position(|&binned| !binned).unwrap_or(binned.len());
             assert!(
-                ends[unkept..].iter().filter(|&&last| last).count() <= max,
+                ends[unbinned..].iter().filter(|&&last| last).count() <= max,
                 "seed {seed}: arrays of too many calls"
             );
             let has_work = schedule.has_work();
@@ -326,9 +326,9 @@ mod tests {
                 tasks.extend(task);
             } else if !tasks.is_empty() {
                 match tasks.swap_remove(random.usize(0..tasks.len())) {
-                    Task::Keep { batch, calls } => {
-                        calls.iter().for_each(|&id| kept[id as usize] = true);
-                        schedule.kept(batch, calls);
+                    Task::Bin { batch, calls } => {
+                        calls.iter().for_each(|&id| binned[id as usize] = true);
+                        schedule.binned(batch, calls);
                     }
                     Task::Draw { bin, work } => {
                         drawn[bin].extend(work.iter().flatten());
@@ -371,8 +371,8 @@ mod tests {
             assert_eq!(schedule.submit(7, 1, true), Err(7));
             assert_eq!(schedule.in_flight(), 0..batches);
             // One batch is binned: the arrays of its calls are free, though nothing is drawn.
-            let Some(Task::Keep { batch, calls }) = schedule.claim(0) else { panic!("a full batch is worth keeping") };
-            schedule.kept(batch, calls);
+            let Some(Task::Bin { batch, calls }) = schedule.claim(0) else { panic!("a full batch is worth binning") };
+            schedule.binned(batch, calls);
             assert_eq!(
                 schedule.submit(7, 1, true).is_ok(),
                 (batches as usize) < most,

@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 /// A thread takes longer to fall asleep and wake than most pieces of work take.
-const GLANCE: Duration = Duration::from_micros(20);
+const SPIN: Duration = Duration::from_micros(20);
 
 /// How often there was progress, for those who wait a moment before they sleep. It only says when to look again: what there is
 /// to see is under the lock.
 #[derive(Default)]
-pub(super) struct Glance(AtomicU64);
+pub(super) struct SpinWait(AtomicU64);
 
-impl Glance {
+impl SpinWait {
     pub fn changed(&self) {
         self.0.fetch_add(1, Relaxed);
     }
@@ -31,7 +31,7 @@ impl Glance {
             return;
         }
         let begin = Instant::now();
-        while self.count() == count && begin.elapsed() < GLANCE {
+        while self.count() == count && begin.elapsed() < SPIN {
             for _ in 0..32 {
                 spin_loop();
             }

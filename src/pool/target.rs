@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use super::grid::Grid;
-use crate::buffer::TileRect;
-use crate::pipeline::Kept;
+use crate::buffer::{Region, TileRect};
 use crate::simd::MAX_LANES;
+use crate::sink::BinnedTriangles;
+use crate::source::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling};
 
@@ -19,7 +20,7 @@ pub(super) struct Call {
     pub indices: usize,
     pub options: DrawOptions,
     pub near: f32,
-    /// Clears that were submitted before it; the crew counts.
+    /// Clears that were submitted before it; the workers counts.
     pub clears: u64,
 }
 
@@ -37,7 +38,7 @@ pub(super) struct Bins {
 
 /// What a bin takes in.
 pub(super) enum Work {
-    Triangles(Kept),
+    Triangles(BinnedTriangles),
     /// The number of the clear, from 1 on.
     Clear(u64),
     Merge(Vec<Shared>),
@@ -54,8 +55,8 @@ unsafe impl Sync for Shared {}
 /// What goes with the lock of a bin.
 #[derive(Default)]
 struct Piece {
-    /// When its areas are due; see `areas.rs`.
-    drawn: u32,
+    /// Tiles drawn into since its coarse cells were refreshed; see `Region`.
+    since_refresh: u32,
 }
 
 /// On a cache line of its own, so that threads in neighbouring bins do not slow each other down.
@@ -134,20 +135,21 @@ impl Target {
         self.bins.iter().all(|bin| bin.clears.load(Ordering::Acquire) >= clears)
     }
 
-    /// Projects calls.
+    /// Bins calls.
     ///
     /// # Safety
     /// What they point to can be read.
-    pub unsafe fn keep(&self, calls: &[Call], kept: &mut Kept) {
-        kept.clear();
+    pub unsafe fn bin(&self, calls: &[Call], binned: &mut BinnedTriangles) {
+        binned.clear();
         let clears = calls.iter().map(|call| call.clears).max();
-        let sift = clears.is_some_and(|clears| self.is_cleared(clears));
+        let prefilter = clears.is_some_and(|clears| self.is_cleared(clears));
         for call in calls {
             // SAFETY: the caller's contract.
-            let done = unsafe {
+            let mesh = unsafe {
                 let triangles = core::slice::from_raw_parts(call.triangles, call.indices);
-                self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept)
+                Mesh::new(call.vertices, triangles, &call.options)
             };
+            let done = self.moc().bin(&mesh, call.near, (self.grid.bounds(), prefilter), binned);
             debug_assert_eq!(done, Ok(()), "a target has a buffer");
         }
     }
@@ -164,42 +166,41 @@ impl Target {
 
     /// Does work of one kind, which is one piece of it unless it is triangles.
     fn draw_run(&self, bin: usize, clip: TileRect, piece: &mut Piece, run: &[Arc<Work>]) {
+        let Ok(buffer) = self.moc().buffer() else {
+            debug_assert!(false, "a target has a buffer");
+            return;
+        };
+        // SAFETY: this thread holds the bin's lock for writing, so nobody else writes its tiles and coarse cells. Threads that bin
+        // read `z_min` word by word, and direct queries of the object that began before discard their answers.
+        let mut region = unsafe { Region::new(buffer, clip, Some(&mut piece.since_refresh)) };
         match &*run[0] {
             Work::Triangles(..) => {
-                let kept = run.iter().filter_map(|work| match &**work {
-                    Work::Triangles(kept) => Some(kept),
+                let triangles = run.iter().filter_map(|work| match &**work {
+                    Work::Triangles(triangles) => Some(triangles),
                     _ => None,
                 });
-                // SAFETY: whoever has the bin's lock for writing is the only one who writes its tiles and areas; those who
-                // keep read least depths, as words, and direct queries of the object that began before the draw discard their
-                // answers.
-                let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
-                debug_assert_eq!(done, Ok(()), "a target has a buffer");
+                self.moc().draw_binned(region, triangles, bin);
             }
             Work::Clear(number) => {
-                if let Ok(buffer) = self.moc().buffer() {
-                    // SAFETY: as above.
-                    unsafe { buffer.clear_tiles(clip) };
-                }
-                piece.drawn = 0;
-                // After the tiles, for those who look at them without the lock.
+                region.clear();
+                // After the tiles, for those who read them without the lock.
                 self.bins[bin].clears.store(*number, Ordering::Release);
             }
-            Work::Merge(others) => self.merge(others, clip),
+            Work::Merge(others) => self.merge(others, region),
         }
     }
 
-    fn merge(&self, others: &[Shared], clip: TileRect) {
+    fn merge(&self, others: &[Shared], region: Region<'_>) {
         // SAFETY: who submitted them vouches for them.
         let others: Vec<&MaskedOcclusionCulling> = others.iter().map(|other| unsafe { other.0.as_ref() }).collect();
-        if let (Ok(mine), Ok(theirs)) = (self.moc().buffer(), self.moc().mergeable(&others)) {
-            // SAFETY: the bin's lock is held for writing; who submitted the others vouches for them.
-            unsafe { crate::buffer::merge::merge(self.moc().implementation(), mine, &theirs, clip) };
+        if let Ok(theirs) = self.moc().mergeable(&others) {
+            // SAFETY: whoever submitted the others vouches for them.
+            unsafe { crate::buffer::merge::merge(self.moc().level(), region, &theirs) };
         }
     }
 
-    /// Asks while nobody draws in the bins that hold a tile of a rectangle, or a least depth that lies in a vector with one of
-    /// its tiles'. What was drawn before a clear that was submitted, but not done yet, hides nothing.
+    /// Queries while nobody draws in the bins that hold a tile of a rectangle, or one whose `z_min` lies in a vector with those of
+    /// its tiles. What was drawn before a clear that was submitted, but not done yet, hides nothing.
     pub fn query(
         &self,
         tiles: TileRect,

@@ -6,7 +6,7 @@ use glam::Mat4;
 
 use super::error::RecordingError;
 use super::format::{CLEAR_BUFFER, END, RENDER_TRIANGLES, SIGNATURE, TEST_RECT, TEST_TRIANGLES, UNKNOWN};
-use crate::culling::MAX_SIZE;
+use crate::buffer::MAX_SIZE;
 use crate::vertices::vertex_count;
 use crate::{BackfaceWinding, ClipPlanes, CullingResult, DrawOptions, Error, VertexLayout, Vertices};
 

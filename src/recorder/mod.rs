@@ -3,7 +3,7 @@
 //! ```text
 //! write.rs   calls ──> file      while an object records
 //! load.rs    file ──> Recording  checked: a file is somebody else's
-//! play.rs    Recording ──> an object, and its answers
+//! (`culling/replay.rs` plays a Recording on an object and compares its answers.)
 //! format.rs  the bytes of both
 //! ```
 //!
@@ -13,7 +13,6 @@
 mod error;
 mod format;
 mod load;
-mod play;
 mod write;
 
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -22,8 +21,8 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::pipeline::Mesh;
-use crate::{CullingResult, DrawOptions, MaskedOcclusionCulling, Vertices};
+use crate::CullingResult;
+use crate::source::Mesh;
 pub use error::RecordingError;
 use format::{RENDER_TRIANGLES, TEST_TRIANGLES};
 pub use load::{RecordedCall, RecordedMesh, RecordedRect, Recording};
@@ -90,27 +89,21 @@ impl Recorder {
         }
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index can be read.
     #[inline(always)]
-    pub unsafe fn render_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
+    pub fn render_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
         if self.is_on() {
-            // SAFETY: the caller's contract.
-            self.record(|file| unsafe { file.triangles(RENDER_TRIANGLES, result, mesh) });
+            self.record(|file| file.triangles(RENDER_TRIANGLES, result, mesh));
         }
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index can be read.
     #[inline(always)]
-    pub unsafe fn test_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
+    pub fn test_triangles(&self, result: Option<CullingResult>, mesh: &Mesh<'_>) {
         if self.is_on() {
-            // SAFETY: the caller's contract.
-            self.record(|file| unsafe { file.triangles(TEST_TRIANGLES, result, mesh) });
+            self.record(|file| file.triangles(TEST_TRIANGLES, result, mesh));
         }
     }
 
-    fn start(&self, path: &Path, header: Header) -> Result<(), RecordingError> {
+    pub fn start(&self, path: &Path, header: Header) -> Result<(), RecordingError> {
         let mut state = self.lock();
         if state.file.is_some() {
             return Err(RecordingError::Busy);
@@ -170,48 +163,5 @@ impl Drop for Recorder {
     fn drop(&mut self) {
         // Nobody is there any more to be told.
         let _ = self.stop();
-    }
-}
-
-impl MaskedOcclusionCulling {
-    /// Records clears, draws and queries into a file from now on, for [`Recording`] and for the player of the library
-    /// that this one stands in for.
-    ///
-    /// The file names one near plane and one resolution: setting another of either ends it, once it holds a call.
-    /// Start before the clear of a frame, so that the recording begins with an empty buffer. Merges and binned lists are not
-    /// recorded; see [`Self::record_render_triangles`].
-    ///
-    /// # Errors
-    /// [`RecordingError::NoBuffer`]; [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
-    pub fn recorder_start(&self, path: impl AsRef<Path>) -> Result<(), RecordingError> {
-        let resolution = self.resolution().ok_or(RecordingError::NoBuffer)?;
-        self.recorder().start(path.as_ref(), (self.near_clip_plane(), resolution))
-    }
-
-    /// Ends the recording. Nothing happens where there is none; an object that is dropped ends its recording, too.
-    ///
-    /// # Errors
-    /// [`RecordingError::File`] where something could not be written, now or before. The file is then cut.
-    pub fn recorder_stop(&self) -> Result<(), RecordingError> {
-        self.recorder().stop()
-    }
-
-    /// Records a draw that the object is not told of by [`Self::render_triangles`], such as that of a binned mesh. Without a
-    /// recording nothing happens.
-    ///
-    /// # Errors
-    /// As [`Self::render_triangles`]; nothing is recorded.
-    pub fn record_render_triangles(
-        &self,
-        vertices: Vertices<'_>,
-        triangles: &[u32],
-        options: &DrawOptions,
-        result: Option<CullingResult>,
-    ) -> Result<(), crate::Error> {
-        self.check_mesh(&vertices, triangles)?;
-        let mesh = Mesh { vertices: vertices.source(), triangles, options };
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.recorder().render_triangles(result, &mesh) };
-        Ok(())
     }
 }

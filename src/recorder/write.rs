@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::format::{CLEAR_BUFFER, END, SIGNATURE, TEST_RECT, UNKNOWN};
-use crate::pipeline::Mesh;
+use crate::source::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, VertexLayout};
 
@@ -34,10 +34,8 @@ impl<W: Write> Writer<W> {
         self.words(&[w_min.to_bits()])
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index can be read.
-    pub unsafe fn triangles(&mut self, kind: u8, result: Option<CullingResult>, mesh: &Mesh<'_>) -> io::Result<()> {
-        let &Mesh { vertices, triangles, options } = mesh;
+    pub fn triangles(&mut self, kind: u8, result: Option<CullingResult>, mesh: &Mesh<'_>) -> io::Result<()> {
+        let (vertices, triangles, options) = (mesh.vertices(), mesh.triangles(), mesh.options());
         let bounds = triangles.iter().min().copied().zip(triangles.iter().max().copied());
         let too_large =
             || io::Error::new(io::ErrorKind::InvalidInput, "more vertices or triangles than the format can count");
@@ -51,7 +49,7 @@ impl<W: Write> Writer<W> {
         let layout = written_layout(vertices.layout);
         self.int(layout.stride)?;
         for index in low..=high {
-            // SAFETY: the caller's contract.
+            // SAFETY: a mesh's vertices can be read.
             let coordinates = unsafe { coordinates(vertices, index) };
             let mut vertex = [0; LARGEST_VERTEX as usize];
             for (coordinate, offset) in coordinates.into_iter().zip([0, layout.offset_y, layout.offset_zw]) {

@@ -1,8 +1,11 @@
 //! AVX2: eight lanes. Masks are vectors of all ones or all zeros; a `D` is two registers of four.
+//!
+//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
+//! the caller of an `unsafe fn` vouches for its pointers.
 
 use super::arch::*;
 use super::compress::EIGHT_LANES;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
@@ -28,7 +31,7 @@ pub(super) unsafe fn enter_sixteen_lanes<J: Job>(job: J) -> J::Output {
 /// As [`enter`].
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 #[inline(never)]
-unsafe fn apart<J: Apart<Avx2>>(s: Avx2, job: J) -> J::Output {
+unsafe fn outlined<J: Outlined<Avx2>>(s: Avx2, job: J) -> J::Output {
     job.run(s)
 }
 
@@ -58,39 +61,33 @@ impl Simd for Avx2 {
     type D = [__m256d; 2];
 
     #[inline(always)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
-        // SAFETY: the token proves the instruction set.
-        unsafe { apart(self, job) }
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
+        unsafe { outlined(self, job) }
     }
 
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> __m256 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_loadu_ps(p) }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> __m256i {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_loadu_si256(p.cast()) }
     }
     #[inline(always)]
     unsafe fn load_some(self, p: *const u32, n: usize) -> __m256i {
-        // SAFETY: the token, and the caller's contract: masked lanes are not read.
+        // SAFETY: masked lanes are not read.
         unsafe { _mm256_maskload_epi32(p.cast(), _mm256_cmpgt_epi32(_mm256_set1_epi32(n.min(8) as i32), self.iota())) }
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: __m256) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_storeu_ps(p, x) }
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: __m256i) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_storeu_si256(p.cast(), x) }
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: [__m256d; 2]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             _mm256_storeu_pd(p, x[0]);
             _mm256_storeu_pd(p.add(4), x[1]);
@@ -98,7 +95,7 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m256 {
-        // SAFETY: the token, and the caller's contract; a stride that fits in 27 bits keeps 7 of them in 31.
+        // SAFETY: a stride that fits in 27 bits keeps 7 of them in 31.
         unsafe {
             if stride >> 27 == 0 {
                 let offsets = _mm256_mullo_epi32(self.iota(), _mm256_set1_epi32(stride as i32));
@@ -110,12 +107,10 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m256i) -> __m256 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_i32gather_ps::<4>(p, index) }
     }
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: __m256i) -> [__m256; 2] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             // What a gather costs is its number of lanes.
             let low = _mm256_castpd_ps(_mm256_i32gather_pd::<4>(p.cast(), _mm256_castsi256_si128(index)));
@@ -129,7 +124,6 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [__m256i; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let load = |k: usize| _mm256_loadu_si256(p.add(8 * k).cast());
             let (a, b, c): (__m256i, __m256i, __m256i) = (load(0), load(1), load(2));
@@ -152,7 +146,6 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [__m256; 4] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             // Vertices k and k + 4 in the halves of one register.
             let a = _mm256_set_m128(_mm_loadu_ps(p.add(16)), _mm_loadu_ps(p));
@@ -171,7 +164,6 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m256; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
             // Vertices k and k + 4 in the halves of one register.
@@ -188,7 +180,6 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m256; 3]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let (xy, xy_high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
             let (zz, zz_high) = (_mm256_unpacklo_ps(z, z), _mm256_unpackhi_ps(z, z));
@@ -205,7 +196,7 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m256, x: __m256i) -> usize {
-        // SAFETY: the token, and the caller's contract; the mask has eight bits.
+        // SAFETY: the mask has eight bits.
         unsafe {
             let bits = _mm256_movemask_ps(m) as usize;
             let order = self.load_bytes(EIGHT_LANES.as_ptr().add(bits).cast());
@@ -215,17 +206,15 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> __m256i {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_cvtepu8_epi32(_mm_loadl_epi64(p.cast())) }
     }
     #[inline(always)]
     fn prefetch(self, p: *const u32) {
-        // SAFETY: the token proves the instruction set; a prefetch reads nothing.
+        // SAFETY: a prefetch reads nothing.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, _: usize, a: __m256) {
-        // SAFETY: the token, and the caller's contract.
+    unsafe fn store_z_min(self, p: *mut f32, _: usize, a: __m256) {
         unsafe {
             let m = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
             let m = _mm_min_ps(m, _mm_movehl_ps(m, m));
@@ -234,57 +223,46 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn lookup(self, table: *const f32, index: __m256i) -> __m256 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), index) }
     }
     #[inline(always)]
     fn f(self, x: f32) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_set1_ps(x) }
     }
     #[inline(always)]
     fn i(self, x: i32) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_set1_epi32(x) }
     }
     #[inline(always)]
     fn d(self, x: f64) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_set1_pd(x); 2] }
     }
     #[inline(always)]
     fn iota(self) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7) }
     }
     #[inline(always)]
     fn add(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_add_ps(a, b) }
     }
     #[inline(always)]
     fn sub(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_sub_ps(a, b) }
     }
     #[inline(always)]
     fn mul(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_mul_ps(a, b) }
     }
     #[inline(always)]
     fn div(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_div_ps(a, b) }
     }
     #[inline(always)]
     fn min(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_min_ps(a, b) }
     }
     #[inline(always)]
     fn max(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_max_ps(a, b) }
     }
     #[inline(always)]
@@ -297,102 +275,82 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     fn abs(self, a: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
     }
     #[inline(always)]
     fn lt(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(a, b) }
     }
     #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(a, b) }
     }
     #[inline(always)]
     fn eq(self, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(a, b) }
     }
     #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_blendv_ps(b, a, m) }
     }
     #[inline(always)]
     fn round(self, a: Self::F) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cvtps_epi32(a) }
     }
     #[inline(always)]
     fn trunc(self, a: Self::F) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cvttps_epi32(a) }
     }
     #[inline(always)]
     fn to_f(self, a: Self::I) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_cvtepi32_ps(a) }
     }
     #[inline(always)]
     fn bits(self, a: Self::F) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castps_si256(a) }
     }
     #[inline(always)]
     fn float_of_bits(self, a: Self::I) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castsi256_ps(a) }
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_add_epi32(a, b) }
     }
     #[inline(always)]
     fn sub_i(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_sub_epi32(a, b) }
     }
     #[inline(always)]
     fn sub_sat(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_subs_epu16(a, b) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_and_si256(a, b) }
     }
     #[inline(always)]
     fn or(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_or_si256(a, b) }
     }
     #[inline(always)]
     fn and_not(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_andnot_si256(a, b) }
     }
     #[inline(always)]
     fn min_i(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_min_epi32(a, b) }
     }
     #[inline(always)]
     fn max_i(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_max_epi32(a, b) }
     }
     #[inline(always)]
     fn max_u(self, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_max_epu32(a, b) }
     }
     #[inline(always)]
     fn largest_u(self, a: Self::I) -> u32 {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let m = _mm_max_epu32(_mm256_castsi256_si128(a), _mm256_extracti128_si256::<1>(a));
             let m = _mm_max_epu32(m, _mm_shuffle_epi32::<0b01_00_11_10>(m));
@@ -401,37 +359,30 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     fn shl<const N: i32>(self, a: __m256i) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_slli_epi32::<N>(a) }
     }
     #[inline(always)]
     fn sra<const N: i32>(self, a: __m256i) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_srai_epi32::<N>(a) }
     }
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { ones_shl(count) }
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)) }
     }
     #[inline(always)]
     fn eq_i(self, a: Self::I, b: Self::I) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)) }
     }
     #[inline(always)]
     fn select_i(self, m: Self::M, a: Self::I, b: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(b), _mm256_castsi256_ps(a), m)) }
     }
     #[inline(always)]
     fn transpose_bytes(self, a: Self::I) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let order = _mm256_setr_epi8(
                 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11,
@@ -442,72 +393,58 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     fn and_m(self, a: Self::M, b: Self::M) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_and_ps(a, b) }
     }
     #[inline(always)]
     fn or_m(self, a: Self::M, b: Self::M) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_or_ps(a, b) }
     }
     #[inline(always)]
     fn and_not_m(self, a: Self::M, b: Self::M) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_andnot_ps(a, b) }
     }
     #[inline(always)]
     fn mask_bits(self, m: Self::M) -> u32 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_movemask_ps(m) as u32 }
     }
     #[inline(always)]
     fn to_d(self, a: Self::F) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_cvtps_pd(_mm256_castps256_ps128(a)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(a))] }
     }
     #[inline(always)]
     fn d_to_f(self, a: Self::D) -> __m256 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_set_m128(_mm256_cvtpd_ps(a[1]), _mm256_cvtpd_ps(a[0])) }
     }
     #[inline(always)]
     fn d_to_i(self, a: Self::D) -> __m256i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm256_set_m128i(_mm256_cvttpd_epi32(a[1]), _mm256_cvttpd_epi32(a[0])) }
     }
     #[inline(always)]
     fn add_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_add_pd(a[0], b[0]), _mm256_add_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn sub_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_sub_pd(a[0], b[0]), _mm256_sub_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_fmadd_pd(a[0], b[0], c[0]), _mm256_fmadd_pd(a[1], b[1], c[1])] }
     }
     #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_div_pd(a[0], b[0]), _mm256_div_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn min_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_min_pd(a[0], b[0]), _mm256_min_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn max_d(self, a: Self::D, b: Self::D) -> [__m256d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm256_max_pd(a[0], b[0]), _mm256_max_pd(a[1], b[1])] }
     }
 }

@@ -1,7 +1,10 @@
 //! AVX-512 (F, BW, DQ, VL), sixteen lanes. Masks are mask registers; a `D` is two registers.
+//!
+//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
+//! the caller of an `unsafe fn` vouches for its pointers.
 
 use super::arch::*;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(());
@@ -17,7 +20,7 @@ pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
 /// As [`enter`].
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 #[inline(never)]
-unsafe fn apart<S, J: Apart<S>>(s: S, job: J) -> J::Output {
+unsafe fn outlined<S, J: Outlined<S>>(s: S, job: J) -> J::Output {
     job.run(s)
 }
 
@@ -47,59 +50,49 @@ impl Simd for Avx512 {
     type D = [__m512d; 2];
 
     #[inline(always)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
-        // SAFETY: the token proves the instruction set.
-        unsafe { apart(self, job) }
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
+        unsafe { outlined(self, job) }
     }
 
     #[inline(always)]
     fn f(self, x: f32) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_set1_ps(x) }
     }
     #[inline(always)]
     fn i(self, x: i32) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_set1_epi32(x) }
     }
     #[inline(always)]
     fn d(self, x: f64) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_set1_pd(x); 2] }
     }
     #[inline(always)]
     fn iota(self) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> __m512 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_loadu_ps(p) }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> __m512i {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_loadu_epi32(p.cast()) }
     }
     #[inline(always)]
     unsafe fn load_some(self, p: *const u32, n: usize) -> __m512i {
-        // SAFETY: the token, and the caller's contract: masked lanes are not read.
+        // SAFETY: masked lanes are not read.
         unsafe { _mm512_maskz_loadu_epi32(_bzhi_u32(0xffff, n.min(16) as u32) as __mmask16, p.cast()) }
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: __m512) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_storeu_ps(p, x) }
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: __m512i) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_storeu_epi32(p.cast(), x) }
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: [__m512d; 2]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             _mm512_storeu_pd(p, x[0]);
             _mm512_storeu_pd(p.add(8), x[1])
@@ -107,12 +100,10 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m512i) -> __m512 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_i32gather_ps::<4>(index, p) }
     }
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: __m512i) -> [__m512; 2] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             // What a gather costs is its number of lanes.
             let low = _mm512_castpd_ps(_mm512_i32gather_pd::<4>(_mm512_castsi512_si256(index), p.cast()));
@@ -124,17 +115,14 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn lookup(self, table: *const f32, index: __m512i) -> __m512 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table)) }
     }
     #[inline(always)]
     unsafe fn lookup_32(self, table: *const f32, index: __m512i) -> __m512 {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_permutex2var_ps(_mm512_loadu_ps(table), index, _mm512_loadu_ps(table.add(16))) }
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m512 {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             // A stride that fits in 26 bits keeps 15 of them in 31.
             if stride >> 26 == 0 {
@@ -164,7 +152,6 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [__m512i; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let load = |k: usize| _mm512_loadu_epi32(p.add(16 * k).cast());
             let (a, b, c): (__m512i, __m512i, __m512i) = (load(0), load(1), load(2));
@@ -185,7 +172,6 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [__m512; 4] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let (a, b) = (_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16)));
             let (c, d) = (_mm512_loadu_ps(p.add(32)), _mm512_loadu_ps(p.add(48)));
@@ -204,7 +190,6 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m512; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
             // Vertices k, k + 4, k + 8 and k + 12 in the quarters of one register.
@@ -231,7 +216,6 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m512; 3]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let (xy, xy_high) = (_mm512_unpacklo_ps(x, y), _mm512_unpackhi_ps(x, y));
             let (zz, zz_high) = (_mm512_unpacklo_ps(z, z), _mm512_unpackhi_ps(z, z));
@@ -252,7 +236,6 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __mmask16, x: __m512i) -> usize {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             // In a register, then stored whole: the compressing store is microcode on some processors.
             _mm512_storeu_epi32(p.cast(), _mm512_maskz_compress_epi32(m, x));
@@ -261,37 +244,30 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> __m512i {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm512_cvtepu8_epi32(_mm_loadu_si128(p.cast())) }
     }
     #[inline(always)]
     fn add(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_add_ps(a, b) }
     }
     #[inline(always)]
     fn sub(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sub_ps(a, b) }
     }
     #[inline(always)]
     fn mul(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_mul_ps(a, b) }
     }
     #[inline(always)]
     fn div(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_div_ps(a, b) }
     }
     #[inline(always)]
     fn min(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_min_ps(a, b) }
     }
     #[inline(always)]
     fn max(self, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_max_ps(a, b) }
     }
     #[inline(always)]
@@ -304,62 +280,51 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     fn abs(self, a: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_abs_ps(a) }
     }
     #[inline(always)]
     fn lt(self, a: Self::F, b: Self::F) -> __mmask16 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b) }
     }
     #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> __mmask16 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b) }
     }
     #[inline(always)]
     fn eq(self, a: Self::F, b: Self::F) -> __mmask16 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(a, b) }
     }
     #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_mask_blend_ps(m, b, a) }
     }
     #[inline(always)]
     fn round(self, a: Self::F) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cvtps_epi32(a) }
     }
     #[inline(always)]
     fn trunc(self, a: Self::F) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cvttps_epi32(a) }
     }
     #[inline(always)]
     fn to_f(self, a: Self::I) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cvtepi32_ps(a) }
     }
     #[inline(always)]
     fn bits(self, a: Self::F) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_castps_si512(a) }
     }
     #[inline(always)]
     fn float_of_bits(self, a: Self::I) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_castsi512_ps(a) }
     }
     #[inline(always)]
     fn prefetch(self, p: *const u32) {
-        // SAFETY: the token proves the instruction set; a prefetch reads nothing.
+        // SAFETY: a prefetch reads nothing.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: __m512) {
-        // SAFETY: the token, and the caller's contract.
+    unsafe fn store_z_min(self, p: *mut f32, pitch: usize, a: __m512) {
         unsafe {
             // Within the halves of the register.
             let m = self.min_positive(a, _mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
@@ -371,87 +336,70 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_add_epi32(a, b) }
     }
     #[inline(always)]
     fn sub_i(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sub_epi32(a, b) }
     }
     #[inline(always)]
     fn sub_sat(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_subs_epu16(a, b) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_and_si512(a, b) }
     }
     #[inline(always)]
     fn or(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_or_si512(a, b) }
     }
     #[inline(always)]
     fn and_not(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_andnot_si512(a, b) }
     }
     #[inline(always)]
     fn min_i(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_min_epi32(a, b) }
     }
     #[inline(always)]
     fn max_i(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_max_epi32(a, b) }
     }
     #[inline(always)]
     fn max_u(self, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_max_epu32(a, b) }
     }
     #[inline(always)]
     fn largest_u(self, a: Self::I) -> u32 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_reduce_max_epu32(a) }
     }
     #[inline(always)]
     fn shl<const N: i32>(self, a: __m512i) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sll_epi32(a, _mm_cvtsi32_si128(N)) }
     }
     #[inline(always)]
     fn sra<const N: i32>(self, a: __m512i) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_sra_epi32(a, _mm_cvtsi32_si128(N)) }
     }
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { ones_shl(count) }
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> __mmask16 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cmpgt_epi32_mask(a, b) }
     }
     #[inline(always)]
     fn eq_i(self, a: Self::I, b: Self::I) -> __mmask16 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_cmpeq_epi32_mask(a, b) }
     }
     #[inline(always)]
     fn select_i(self, m: Self::M, a: Self::I, b: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_mask_blend_epi32(m, b, a) }
     }
     #[inline(always)]
     fn transpose_bytes(self, a: Self::I) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15));
             _mm512_shuffle_epi8(a, order)
@@ -475,52 +423,42 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     fn to_d(self, a: Self::F) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_cvtps_pd(_mm512_castps512_ps256(a)), _mm512_cvtps_pd(_mm512_extractf32x8_ps::<1>(a))] }
     }
     #[inline(always)]
     fn d_to_f(self, a: Self::D) -> __m512 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_insertf32x8::<1>(_mm512_castps256_ps512(_mm512_cvtpd_ps(a[0])), _mm512_cvtpd_ps(a[1])) }
     }
     #[inline(always)]
     fn d_to_i(self, a: Self::D) -> __m512i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm512_inserti32x8::<1>(_mm512_castsi256_si512(_mm512_cvttpd_epi32(a[0])), _mm512_cvttpd_epi32(a[1])) }
     }
     #[inline(always)]
     fn add_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_add_pd(a[0], b[0]), _mm512_add_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn sub_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_sub_pd(a[0], b[0]), _mm512_sub_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_mul_pd(a[0], b[0]), _mm512_mul_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_fmadd_pd(a[0], b[0], c[0]), _mm512_fmadd_pd(a[1], b[1], c[1])] }
     }
     #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_div_pd(a[0], b[0]), _mm512_div_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn min_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_min_pd(a[0], b[0]), _mm512_min_pd(a[1], b[1])] }
     }
     #[inline(always)]
     fn max_d(self, a: Self::D, b: Self::D) -> [__m512d; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [_mm512_max_pd(a[0], b[0]), _mm512_max_pd(a[1], b[1])] }
     }
 }

@@ -1,10 +1,9 @@
 //! The vector layer: only the operations that the kernel needs, on every instruction set alike.
 //!
-//! The kernel is written once, generic over [`Simd`], and is entered through [`run`], which picks a token
-//! (a value of size zero whose existence proves that the processor has the instruction set) and calls
-//! the [`Job`] inside of a function compiled for it. For that to work, everything in between is
-//! `#[inline(always)]`: a helper that is not inlined is compiled for the baseline, and each intrinsic
-//! in it becomes a call (36 times slower when it was measured).
+//! The kernel is written once, generic over [`Simd`], and is entered through [`run`], which takes a [`Level`] that detection
+//! made, picks the token of that instruction set (a value of size zero whose existence proves that the processor has it) and
+//! calls the [`Job`] inside a function compiled for it. For that to work, everything in between is `#[inline(always)]`: a
+//! helper that is not inlined is compiled for the baseline, and each intrinsic in it becomes a call.
 //!
 //! Every operation gives the same bits everywhere. Where instruction sets differ by nature, this layer
 //! fixes one meaning: `min` and `max` return their second operand when either is NaN (as x86 does),
@@ -15,6 +14,7 @@ mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx512;
 mod compress;
+mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod pair;
@@ -38,7 +38,10 @@ use core::arch::x86 as arch;
 use core::arch::x86_64 as arch;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use crate::Implementation;
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
+pub(crate) use level::with_sixteen_lanes;
+pub(crate) use level::{Level, run, run_on_eight_lanes};
+
 use compress::EIGHT_LANES;
 
 /// No vector has more lanes.
@@ -54,9 +57,9 @@ pub(crate) trait Simd: Copy {
     type M: Copy;
     type D: Copy;
 
-    /// Calls a job in a function of its own, compiled for this token: for what is shared by several callers and
-    /// takes long enough.
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output;
+    /// Calls a job in a function of its own, compiled for this token: for code that several callers share and that takes long
+    /// enough.
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output;
 
     fn f(self, x: f32) -> Self::F;
     fn i(self, x: i32) -> Self::I;
@@ -194,7 +197,7 @@ pub(crate) trait Simd: Copy {
     /// four lanes has one least.
     /// # Safety
     /// Both can be written.
-    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F);
+    unsafe fn store_z_min(self, p: *mut f32, pitch: usize, a: Self::F);
 
     fn add_i(self, a: Self::I, b: Self::I) -> Self::I;
     fn sub_i(self, a: Self::I, b: Self::I) -> Self::I;
@@ -323,8 +326,8 @@ fn strided(p: *const u8, k: usize, stride: usize) -> *const f32 {
     p.wrapping_add(k.wrapping_mul(stride)).cast()
 }
 
-/// A piece of the kernel that is compiled once for a token and called, not inlined, from wherever it is used.
-pub(crate) trait Apart<S> {
+/// A piece of the kernel that is compiled once per token and called, not inlined.
+pub(crate) trait Outlined<S> {
     type Output;
     fn run(self, s: S) -> Self::Output;
 }
@@ -333,98 +336,4 @@ pub(crate) trait Apart<S> {
 pub(crate) trait Job {
     type Output;
     fn run<S: Simd>(self, s: S) -> Self::Output;
-}
-
-/// Runs `job` on `implementation`, which must be one of [`available`].
-#[inline]
-pub(crate) fn run<J: Job>(implementation: Implementation, job: J) -> J::Output {
-    match implementation {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: an object's implementation is one of `available`, which asked the processor.
-        Implementation::Avx512 => unsafe { avx512::enter(job) },
-        #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
-        // SAFETY: as above.
-        Implementation::Avx2 if SIXTEEN_LANES.get() => unsafe { avx2::enter_sixteen_lanes(job) },
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: as above.
-        Implementation::Avx2 => unsafe { avx2::enter(job) },
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: as above.
-        Implementation::Sse41 => unsafe { sse::enter_sse41(job) },
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Implementation::Sse2 => sse::enter_sse2(job),
-        #[cfg(target_arch = "aarch64")]
-        Implementation::Neon => neon::enter(job),
-        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        Implementation::Simd128 => wasm::enter(job),
-        _ => scalar::enter(job),
-    }
-}
-
-/// The same for what vectors of sixteen lanes may not take; the bits are the same.
-#[inline]
-pub(crate) fn run_on_eight_lanes<J: Job>(implementation: Implementation, job: J) -> J::Output {
-    match implementation {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: an object's implementation is one of `available`, and where AVX-512 is, AVX2 is.
-        Implementation::Avx512 | Implementation::Avx2 => unsafe { avx2::enter(job) },
-        other => run(other, job),
-    }
-}
-
-#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
-std::thread_local! {
-    static SIXTEEN_LANES: core::cell::Cell<bool> = const { core::cell::Cell::new(false) };
-}
-
-/// Does `what` with sixteen lanes, two vectors side by side, in place of AVX2's eight: what is only for such vectors is tested
-/// where the processor has none. Only what runs on this thread.
-#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
-pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
-    struct Reset;
-    impl Drop for Reset {
-        fn drop(&mut self) {
-            SIXTEEN_LANES.set(false);
-        }
-    }
-    let _reset = Reset;
-    SIXTEEN_LANES.set(true);
-    what()
-}
-
-/// What this processor can run, the plainest first.
-pub(crate) fn available() -> &'static [Implementation] {
-    use Implementation::*;
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        const ALL: [Implementation; 5] = [Scalar, Sse2, Sse41, Avx2, Avx512];
-        let sse41 = is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3");
-        // Every processor with AVX2 has these, but a virtual machine may hide them.
-        let avx2 = sse41
-            && is_x86_feature_detected!("avx2")
-            && is_x86_feature_detected!("fma")
-            && is_x86_feature_detected!("bmi1")
-            && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt")
-            && is_x86_feature_detected!("popcnt");
-        let avx512 = avx2
-            && is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        &ALL[..2 + usize::from(sse41) + usize::from(avx2) + usize::from(avx512)]
-    }
-    #[cfg(target_arch = "aarch64")]
-    {
-        &[Scalar, Neon]
-    }
-    #[cfg(target_arch = "wasm32")]
-    {
-        // A module either has simd128 throughout or not at all.
-        if cfg!(target_feature = "simd128") { &[Scalar, Simd128] } else { &[Scalar] }
-    }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
-    {
-        &[Scalar]
-    }
 }

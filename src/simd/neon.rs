@@ -1,10 +1,13 @@
 //! NEON, aarch64's baseline: four lanes, used two by two. Masks are vectors of all ones or all zeros.
+//!
+//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
+//! the caller of an `unsafe fn` vouches for its pointers.
 
 use core::arch::aarch64::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Neon(());
@@ -22,33 +25,28 @@ impl Simd for Neon {
     type D = [float64x2_t; 2];
 
     #[inline(never)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
         job.run(self)
     }
 
     #[inline(always)]
     fn f(self, x: f32) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vdupq_n_f32(x) }
     }
     #[inline(always)]
     fn i(self, x: i32) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vdupq_n_s32(x) }
     }
     #[inline(always)]
     fn d(self, x: f64) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vdupq_n_f64(x); 2] }
     }
     #[inline(always)]
     fn iota(self) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vld1q_s32([0, 1, 2, 3].as_ptr()) }
     }
     #[inline(always)]
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [float32x4_t; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let load = |lane: usize| vld1q_f32(record(p, index, lane));
             let (a, b, c, d) = (load(0), load(1), load(2), load(3));
@@ -59,17 +57,14 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn store_records(self, p: *mut f32, [x, y, z]: [float32x4_t; 3]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { vst4q_f32(p, float32x4x4_t(x, y, z, z)) }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> float32x4_t {
-        // SAFETY: the token, and the caller's contract.
         unsafe { vld1q_f32(p) }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> int32x4_t {
-        // SAFETY: the token, and the caller's contract.
         unsafe { vld1q_s32(p.cast()) }
     }
     #[inline(always)]
@@ -79,22 +74,19 @@ impl Simd for Neon {
             // SAFETY: the caller's contract.
             *x = unsafe { p.add(lane).read_unaligned() };
         }
-        // SAFETY: the token; four words.
+        // SAFETY: four words.
         unsafe { vld1q_s32(lanes.as_ptr().cast()) }
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: float32x4_t) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { vst1q_f32(p, x) }
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: int32x4_t) {
-        // SAFETY: the token, and the caller's contract.
         unsafe { vst1q_s32(p.cast(), x) }
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: [float64x2_t; 2]) {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             vst1q_f64(p, x[0]);
             vst1q_f64(p.add(2), x[1])
@@ -102,7 +94,6 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> float32x4_t {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let at = |k: usize| strided(p, k, stride).read_unaligned();
             vld1q_f32([at(0), at(1), at(2), at(3)].as_ptr())
@@ -110,7 +101,6 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: int32x4_t) -> float32x4_t {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let mut k = [0u32; 4];
             vst1q_s32(k.as_mut_ptr().cast(), index);
@@ -120,7 +110,6 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: int32x4_t) -> [float32x4_t; 2] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let mut k = [0u32; 4];
             vst1q_s32(k.as_mut_ptr().cast(), index);
@@ -131,7 +120,6 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [int32x4_t; 3] {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let t = vld3q_s32(p.cast());
             [t.0, t.1, t.2]
@@ -139,13 +127,11 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [float32x4_t; 4] {
-        // SAFETY: the token, and the caller's contract.
         let v = unsafe { vld4q_f32(p) };
         [v.0, v.1, v.2, v.3]
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> int32x4_t {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let bytes = vcreate_u8(u64::from(p.cast::<u32>().read_unaligned()));
             vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(vmovl_u8(bytes))))
@@ -153,7 +139,6 @@ impl Simd for Neon {
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: uint32x4_t, x: int32x4_t) -> usize {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let bits = self.mask_bits(m) as usize;
             let order = vld1q_u8(FOUR_LANES.as_ptr().add(bits).cast());
@@ -163,147 +148,118 @@ impl Simd for Neon {
     }
     #[inline(always)]
     fn add(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vaddq_f32(a, b) }
     }
     #[inline(always)]
     fn sub(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vsubq_f32(a, b) }
     }
     #[inline(always)]
     fn mul(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vmulq_f32(a, b) }
     }
     #[inline(always)]
     fn div(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vdivq_f32(a, b) }
     }
     #[inline(always)]
     fn min(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbslq_f32(vcltq_f32(a, b), a, b) }
     }
     #[inline(always)]
     fn max(self, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbslq_f32(vcgtq_f32(a, b), a, b) }
     }
     #[inline(always)]
     fn abs(self, a: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vabsq_f32(a) }
     }
     #[inline(always)]
     fn lt(self, a: Self::F, b: Self::F) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcltq_f32(a, b) }
     }
     #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcleq_f32(a, b) }
     }
     #[inline(always)]
     fn eq(self, a: Self::F, b: Self::F) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vceqq_f32(a, b) }
     }
     #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbslq_f32(m, a, b) }
     }
     #[inline(always)]
     fn round(self, a: Self::F) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcvtnq_s32_f32(a) }
     }
     #[inline(always)]
     fn trunc(self, a: Self::F) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcvtq_s32_f32(a) }
     }
     #[inline(always)]
     fn to_f(self, a: Self::I) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcvtq_f32_s32(a) }
     }
     #[inline(always)]
     fn bits(self, a: Self::F) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vreinterpretq_s32_f32(a) }
     }
     #[inline(always)]
     fn float_of_bits(self, a: Self::I) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vreinterpretq_f32_s32(a) }
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, _: usize, a: Self::F) {
-        // SAFETY: the token, and the caller's contract.
+    unsafe fn store_z_min(self, p: *mut f32, _: usize, a: Self::F) {
         unsafe { store_relaxed(p, vminvq_f32(a)) }
     }
     #[inline(always)]
     fn add_i(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vaddq_s32(a, b) }
     }
     #[inline(always)]
     fn sub_i(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vsubq_s32(a, b) }
     }
     #[inline(always)]
     fn sub_sat(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vreinterpretq_s32_u16(vqsubq_u16(vreinterpretq_u16_s32(a), vreinterpretq_u16_s32(b))) }
     }
     #[inline(always)]
     fn and(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vandq_s32(a, b) }
     }
     #[inline(always)]
     fn or(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vorrq_s32(a, b) }
     }
     #[inline(always)]
     fn min_i(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vminq_s32(a, b) }
     }
     #[inline(always)]
     fn max_i(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vmaxq_s32(a, b) }
     }
     #[inline(always)]
     fn and_not(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbicq_s32(b, a) }
     }
     #[inline(always)]
     fn max_u(self, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vreinterpretq_s32_u32(vmaxq_u32(vreinterpretq_u32_s32(a), vreinterpretq_u32_s32(b))) }
     }
     #[inline(always)]
     fn shl<const N: i32>(self, a: int32x4_t) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vshlq_s32(a, vdupq_n_s32(N)) }
     }
     #[inline(always)]
     fn sra<const N: i32>(self, a: int32x4_t) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vshlq_s32(a, vdupq_n_s32(-N)) }
     }
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             // The instruction looks at a count's lowest byte only.
             vshlq_s32(vdupq_n_s32(-1), vminq_s32(count, vdupq_n_s32(32)))
@@ -311,22 +267,18 @@ impl Simd for Neon {
     }
     #[inline(always)]
     fn gt_i(self, a: Self::I, b: Self::I) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcgtq_s32(a, b) }
     }
     #[inline(always)]
     fn eq_i(self, a: Self::I, b: Self::I) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vceqq_s32(a, b) }
     }
     #[inline(always)]
     fn select_i(self, m: Self::M, a: Self::I, b: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbslq_s32(m, a, b) }
     }
     #[inline(always)]
     fn transpose_bytes(self, a: Self::I) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let order = vld1q_u8([0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15].as_ptr());
             vreinterpretq_s32_u8(vqtbl1q_u8(vreinterpretq_u8_s32(a), order))
@@ -334,72 +286,58 @@ impl Simd for Neon {
     }
     #[inline(always)]
     fn and_m(self, a: Self::M, b: Self::M) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vandq_u32(a, b) }
     }
     #[inline(always)]
     fn or_m(self, a: Self::M, b: Self::M) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vorrq_u32(a, b) }
     }
     #[inline(always)]
     fn and_not_m(self, a: Self::M, b: Self::M) -> uint32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vbicq_u32(b, a) }
     }
     #[inline(always)]
     fn mask_bits(self, m: Self::M) -> u32 {
-        // SAFETY: the token proves the instruction set.
         unsafe { vaddvq_u32(vandq_u32(m, vld1q_u32([1, 2, 4, 8].as_ptr()))) }
     }
     #[inline(always)]
     fn to_d(self, a: Self::F) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vcvt_f64_f32(vget_low_f32(a)), vcvt_high_f64_f32(a)] }
     }
     #[inline(always)]
     fn d_to_f(self, a: Self::D) -> float32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcombine_f32(vcvt_f32_f64(a[0]), vcvt_f32_f64(a[1])) }
     }
     #[inline(always)]
     fn d_to_i(self, a: Self::D) -> int32x4_t {
-        // SAFETY: the token proves the instruction set.
         unsafe { vcombine_s32(vmovn_s64(vcvtq_s64_f64(a[0])), vmovn_s64(vcvtq_s64_f64(a[1]))) }
     }
     #[inline(always)]
     fn add_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vaddq_f64(a[0], b[0]), vaddq_f64(a[1], b[1])] }
     }
     #[inline(always)]
     fn sub_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vsubq_f64(a[0], b[0]), vsubq_f64(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vmulq_f64(a[0], b[0]), vmulq_f64(a[1], b[1])] }
     }
     #[inline(always)]
     fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vfmaq_f64(c[0], a[0], b[0]), vfmaq_f64(c[1], a[1], b[1])] }
     }
     #[inline(always)]
     fn div_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vdivq_f64(a[0], b[0]), vdivq_f64(a[1], b[1])] }
     }
     #[inline(always)]
     fn min_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vbslq_f64(vcltq_f64(a[0], b[0]), a[0], b[0]), vbslq_f64(vcltq_f64(a[1], b[1]), a[1], b[1])] }
     }
     #[inline(always)]
     fn max_d(self, a: Self::D, b: Self::D) -> [float64x2_t; 2] {
-        // SAFETY: the token proves the instruction set.
         unsafe { [vbslq_f64(vcgtq_f64(a[0], b[0]), a[0], b[0]), vbslq_f64(vcgtq_f64(a[1], b[1]), a[1], b[1])] }
     }
 }

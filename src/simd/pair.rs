@@ -1,6 +1,6 @@
 //! Twice as many lanes: two vectors of a narrower instruction set side by side.
 
-use super::{Apart, Simd, strided};
+use super::{Outlined, Simd, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Pair<S>(pub S);
@@ -8,7 +8,7 @@ pub(super) struct Pair<S>(pub S);
 /// A job of the pair, as a job of the half.
 struct InPair<J>(J);
 
-impl<S: Simd, J: Apart<Pair<S>>> Apart<S> for InPair<J> {
+impl<S: Simd, J: Outlined<Pair<S>>> Outlined<S> for InPair<J> {
     type Output = J::Output;
 
     #[inline(always)]
@@ -34,8 +34,8 @@ impl<S: Simd> Simd for Pair<S> {
     type D = [S::D; 2];
 
     #[inline(always)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
-        self.0.apart(InPair(job))
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
+        self.0.outlined(InPair(job))
     }
 
     #[inline(always)]
@@ -213,14 +213,14 @@ impl<S: Simd> Simd for Pair<S> {
         self.0.prefetch(p);
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, pitch: usize, a: Self::F) {
+    unsafe fn store_z_min(self, p: *mut f32, pitch: usize, a: Self::F) {
         // SAFETY: the caller's contract.
         unsafe {
             if S::LANES < 8 {
-                return self.0.store_least(p, pitch, self.0.min(a[0], a[1]));
+                return self.0.store_z_min(p, pitch, self.0.min(a[0], a[1]));
             }
-            self.0.store_least(p, pitch, a[0]);
-            self.0.store_least(p.add(pitch), pitch, a[1]);
+            self.0.store_z_min(p, pitch, a[0]);
+            self.0.store_z_min(p.add(pitch), pitch, a[1]);
         }
     }
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
 
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 use crate::float_environment::round_ties_even;
 
 #[derive(Clone, Copy)]
@@ -83,7 +83,7 @@ impl Simd for Scalar4 {
     type M = [bool; 4];
     type D = [f64; 4];
 
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
         job.run(self)
     }
 
@@ -259,7 +259,7 @@ impl Simd for Scalar4 {
         lanes!(a => f32::from_bits(a as u32))
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, _: usize, a: [f32; 4]) {
+    unsafe fn store_z_min(self, p: *mut f32, _: usize, a: [f32; 4]) {
         let least = |a: f32, b: f32| if a < b { a } else { b };
         // SAFETY: the caller's contract.
         unsafe { store_relaxed(p, least(least(a[0], a[1]), least(a[2], a[3]))) }

@@ -1,10 +1,13 @@
 //! SSE2, the baseline of x86-64 and i686, and SSE4.1: four lanes, used two by two. Masks are vectors of all ones or
 //! all zeros. What SSE2 lacks (blends, byte shuffles, some minima) is spelled out.
+//!
+//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
+//! the caller of an `unsafe fn` vouches for its pointers.
 
 use super::arch::*;
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(());
@@ -30,7 +33,7 @@ pub(super) unsafe fn enter_sse41<J: Job>(job: J) -> J::Output {
 /// The processor has SSSE3 and SSE4.1.
 #[target_feature(enable = "sse4.1,ssse3")]
 #[inline(never)]
-unsafe fn apart_sse41<J: Apart<Sse41>>(s: Sse41, job: J) -> J::Output {
+unsafe fn apart_sse41<J: Outlined<Sse41>>(s: Sse41, job: J) -> J::Output {
     job.run(s)
 }
 
@@ -67,22 +70,18 @@ macro_rules! shared {
 
         #[inline(always)]
         fn f(self, x: f32) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_set1_ps(x) }
         }
         #[inline(always)]
         fn i(self, x: i32) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_set1_epi32(x) }
         }
         #[inline(always)]
         fn d(self, x: f64) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_set1_pd(x); 2] }
         }
         #[inline(always)]
         unsafe fn gather_pairs(self, p: *const f32, index: __m128i) -> [__m128; 2] {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let [a, b, c, d] = numbers(index).map(|k| _mm_loadl_epi64(p.add(k as usize).cast()));
                 let low = _mm_castsi128_ps(_mm_unpacklo_epi64(a, b));
@@ -92,12 +91,10 @@ macro_rules! shared {
         }
         #[inline(always)]
         fn iota(self) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_setr_epi32(0, 1, 2, 3) }
         }
         #[inline(always)]
         unsafe fn load_records(self, p: *const f32, index: *const u32) -> [__m128; 3] {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let load = |lane: usize| _mm_loadu_ps(record(p, index, lane));
                 let (a, b, c, d) = (load(0), load(1), load(2), load(3));
@@ -108,7 +105,6 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn store_records(self, p: *mut f32, [x, y, z]: [__m128; 3]) {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let (xy, xy_high) = (_mm_unpacklo_ps(x, y), _mm_unpackhi_ps(x, y));
                 let (zz, zz_high) = (_mm_unpacklo_ps(z, z), _mm_unpackhi_ps(z, z));
@@ -120,17 +116,14 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn load_f(self, p: *const f32) -> __m128 {
-            // SAFETY: the token, and the caller's contract.
             unsafe { _mm_loadu_ps(p) }
         }
         #[inline(always)]
         unsafe fn load_i(self, p: *const u32) -> __m128i {
-            // SAFETY: the token, and the caller's contract.
             unsafe { _mm_loadu_si128(p.cast()) }
         }
         #[inline(always)]
         unsafe fn load_some(self, p: *const u32, n: usize) -> __m128i {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let one = |k: usize| _mm_cvtsi32_si128(p.add(k).cast::<i32>().read_unaligned());
                 match n {
@@ -144,17 +137,14 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn store_f(self, p: *mut f32, x: __m128) {
-            // SAFETY: the token, and the caller's contract.
             unsafe { _mm_storeu_ps(p, x) }
         }
         #[inline(always)]
         unsafe fn store_i(self, p: *mut u32, x: __m128i) {
-            // SAFETY: the token, and the caller's contract.
             unsafe { _mm_storeu_si128(p.cast(), x) }
         }
         #[inline(always)]
         unsafe fn store_d(self, p: *mut f64, x: [__m128d; 2]) {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 _mm_storeu_pd(p, x[0]);
                 _mm_storeu_pd(p.add(2), x[1])
@@ -162,7 +152,6 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m128 {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let at = |k: usize| strided(p, k, stride).read_unaligned();
                 _mm_setr_ps(at(0), at(1), at(2), at(3))
@@ -170,7 +159,6 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn load_triangles(self, p: *const u32) -> [__m128i; 3] {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let load = |k: usize| _mm_loadu_ps(p.add(4 * k).cast());
                 // a0 b0 c0 a1 | b1 c1 a2 b2 | c2 a3 b3 c3
@@ -186,7 +174,6 @@ macro_rules! shared {
         }
         #[inline(always)]
         unsafe fn load_quads(self, p: *const f32) -> [__m128; 4] {
-            // SAFETY: the token, and the caller's contract.
             unsafe {
                 let (a, b, c, d) =
                     (_mm_loadu_ps(p), _mm_loadu_ps(p.add(4)), _mm_loadu_ps(p.add(8)), _mm_loadu_ps(p.add(12)));
@@ -202,87 +189,71 @@ macro_rules! shared {
         }
         #[inline(always)]
         fn add(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_add_ps(a, b) }
         }
         #[inline(always)]
         fn sub(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_sub_ps(a, b) }
         }
         #[inline(always)]
         fn mul(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_mul_ps(a, b) }
         }
         #[inline(always)]
         fn div(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_div_ps(a, b) }
         }
         #[inline(always)]
         fn min(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_min_ps(a, b) }
         }
         #[inline(always)]
         fn max(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_max_ps(a, b) }
         }
         #[inline(always)]
         fn abs(self, a: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_andnot_ps(_mm_set1_ps(-0.0), a) }
         }
         #[inline(always)]
         fn lt(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cmplt_ps(a, b) }
         }
         #[inline(always)]
         fn le(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cmple_ps(a, b) }
         }
         #[inline(always)]
         fn eq(self, a: Self::F, b: Self::F) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cmpeq_ps(a, b) }
         }
         #[inline(always)]
         fn round(self, a: Self::F) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cvtps_epi32(a) }
         }
         #[inline(always)]
         fn trunc(self, a: Self::F) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cvttps_epi32(a) }
         }
         #[inline(always)]
         fn to_f(self, a: Self::I) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_cvtepi32_ps(a) }
         }
         #[inline(always)]
         fn bits(self, a: Self::F) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_castps_si128(a) }
         }
         #[inline(always)]
         fn float_of_bits(self, a: Self::I) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_castsi128_ps(a) }
         }
         #[inline(always)]
         fn prefetch(self, p: *const u32) {
-            // SAFETY: the token proves the instruction set; a prefetch reads nothing.
+            // SAFETY: a prefetch reads nothing.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
         }
         #[inline(always)]
-        unsafe fn store_least(self, p: *mut f32, _: usize, a: Self::F) {
-            // SAFETY: the token, and the caller's contract.
+        unsafe fn store_z_min(self, p: *mut f32, _: usize, a: Self::F) {
             unsafe {
                 let m = _mm_min_ps(a, _mm_movehl_ps(a, a));
                 store_relaxed(p, _mm_cvtss_f32(_mm_min_ss(m, _mm_shuffle_ps::<1>(m, m))));
@@ -290,47 +261,38 @@ macro_rules! shared {
         }
         #[inline(always)]
         fn add_i(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_add_epi32(a, b) }
         }
         #[inline(always)]
         fn sub_i(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_sub_epi32(a, b) }
         }
         #[inline(always)]
         fn sub_sat(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_subs_epu16(a, b) }
         }
         #[inline(always)]
         fn and(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_and_si128(a, b) }
         }
         #[inline(always)]
         fn or(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_or_si128(a, b) }
         }
         #[inline(always)]
         fn and_not(self, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_andnot_si128(a, b) }
         }
         #[inline(always)]
         fn shl<const N: i32>(self, a: __m128i) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_slli_epi32::<N>(a) }
         }
         #[inline(always)]
         fn sra<const N: i32>(self, a: __m128i) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_srai_epi32::<N>(a) }
         }
         #[inline(always)]
         fn ones_shl(self, count: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe {
                 // There is no shift by a count of each lane's own: 2^count through the exponent of a float. What comes
                 // of counts beyond 31 is masked away.
@@ -342,82 +304,66 @@ macro_rules! shared {
         }
         #[inline(always)]
         fn gt_i(self, a: Self::I, b: Self::I) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_castsi128_ps(_mm_cmpgt_epi32(a, b)) }
         }
         #[inline(always)]
         fn eq_i(self, a: Self::I, b: Self::I) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_castsi128_ps(_mm_cmpeq_epi32(a, b)) }
         }
         #[inline(always)]
         fn select_i(self, m: Self::M, a: Self::I, b: Self::I) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_castps_si128(self.select(m, _mm_castsi128_ps(a), _mm_castsi128_ps(b))) }
         }
         #[inline(always)]
         fn and_m(self, a: Self::M, b: Self::M) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_and_ps(a, b) }
         }
         #[inline(always)]
         fn or_m(self, a: Self::M, b: Self::M) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_or_ps(a, b) }
         }
         #[inline(always)]
         fn and_not_m(self, a: Self::M, b: Self::M) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_andnot_ps(a, b) }
         }
         #[inline(always)]
         fn mask_bits(self, m: Self::M) -> u32 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_movemask_ps(m) as u32 }
         }
         #[inline(always)]
         fn to_d(self, a: Self::F) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_cvtps_pd(a), _mm_cvtps_pd(_mm_movehl_ps(a, a))] }
         }
         #[inline(always)]
         fn d_to_f(self, a: Self::D) -> __m128 {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_movelh_ps(_mm_cvtpd_ps(a[0]), _mm_cvtpd_ps(a[1])) }
         }
         #[inline(always)]
         fn d_to_i(self, a: Self::D) -> __m128i {
-            // SAFETY: the token proves the instruction set.
             unsafe { _mm_unpacklo_epi64(_mm_cvttpd_epi32(a[0]), _mm_cvttpd_epi32(a[1])) }
         }
         #[inline(always)]
         fn add_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_add_pd(a[0], b[0]), _mm_add_pd(a[1], b[1])] }
         }
         #[inline(always)]
         fn sub_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_sub_pd(a[0], b[0]), _mm_sub_pd(a[1], b[1])] }
         }
         #[inline(always)]
         fn mul_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_mul_pd(a[0], b[0]), _mm_mul_pd(a[1], b[1])] }
         }
         #[inline(always)]
         fn div_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_div_pd(a[0], b[0]), _mm_div_pd(a[1], b[1])] }
         }
         #[inline(always)]
         fn min_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_min_pd(a[0], b[0]), _mm_min_pd(a[1], b[1])] }
         }
         #[inline(always)]
         fn max_d(self, a: Self::D, b: Self::D) -> [__m128d; 2] {
-            // SAFETY: the token proves the instruction set.
             unsafe { [_mm_max_pd(a[0], b[0]), _mm_max_pd(a[1], b[1])] }
         }
     };
@@ -427,13 +373,12 @@ impl Simd for Sse2 {
     shared!();
 
     #[inline(never)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
         job.run(self)
     }
 
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m128i) -> __m128 {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let mut k = [0u32; 4];
             _mm_storeu_si128(k.as_mut_ptr().cast(), index);
@@ -443,7 +388,6 @@ impl Simd for Sse2 {
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> __m128i {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let (bytes, zero) = (_mm_cvtsi32_si128(p.cast::<i32>().read_unaligned()), _mm_setzero_si128());
             _mm_unpacklo_epi16(_mm_unpacklo_epi8(bytes, zero), zero)
@@ -451,7 +395,6 @@ impl Simd for Sse2 {
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m128, x: __m128i) -> usize {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let bits = _mm_movemask_ps(m) as usize;
             let mut lanes = [0u32; 4];
@@ -466,22 +409,18 @@ impl Simd for Sse2 {
     }
     #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> __m128 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)) }
     }
     #[inline(always)]
     fn min_i(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { self.select_i(_mm_castsi128_ps(_mm_cmpgt_epi32(b, a)), a, b) }
     }
     #[inline(always)]
     fn max_i(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { self.select_i(_mm_castsi128_ps(_mm_cmpgt_epi32(a, b)), a, b) }
     }
     #[inline(always)]
     fn max_u(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let flip = _mm_set1_epi32(i32::MIN);
             let above = _mm_cmpgt_epi32(_mm_xor_si128(a, flip), _mm_xor_si128(b, flip));
@@ -490,7 +429,6 @@ impl Simd for Sse2 {
     }
     #[inline(always)]
     fn transpose_bytes(self, a: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe {
             let half = _mm_unpacklo_epi8(a, _mm_srli_si128::<8>(a));
             _mm_unpacklo_epi8(half, _mm_srli_si128::<8>(half))
@@ -502,14 +440,12 @@ impl Simd for Sse41 {
     shared!();
 
     #[inline(always)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
-        // SAFETY: the token proves the instruction set.
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
         unsafe { apart_sse41(self, job) }
     }
 
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: __m128i) -> __m128 {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let at = |k: i32| *p.add(k as usize);
             _mm_setr_ps(
@@ -522,12 +458,10 @@ impl Simd for Sse41 {
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> __m128i {
-        // SAFETY: the token, and the caller's contract.
         unsafe { _mm_cvtepu8_epi32(_mm_cvtsi32_si128(p.cast::<i32>().read_unaligned())) }
     }
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __m128, x: __m128i) -> usize {
-        // SAFETY: the token, and the caller's contract.
         unsafe {
             let bits = _mm_movemask_ps(m) as usize;
             let order = _mm_loadu_si128(FOUR_LANES.as_ptr().add(bits).cast());
@@ -537,27 +471,22 @@ impl Simd for Sse41 {
     }
     #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> __m128 {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_blendv_ps(b, a, m) }
     }
     #[inline(always)]
     fn min_i(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_min_epi32(a, b) }
     }
     #[inline(always)]
     fn max_i(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_max_epi32(a, b) }
     }
     #[inline(always)]
     fn max_u(self, a: Self::I, b: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_max_epu32(a, b) }
     }
     #[inline(always)]
     fn transpose_bytes(self, a: Self::I) -> __m128i {
-        // SAFETY: the token proves the instruction set.
         unsafe { _mm_shuffle_epi8(a, _mm_setr_epi8(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15)) }
     }
 }

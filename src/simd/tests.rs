@@ -2,7 +2,7 @@
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::with_sixteen_lanes;
-use super::{Job, Simd, available, run};
+use super::{Job, Level, Simd, run};
 use crate::Implementation;
 
 /// Sixteen lanes of input, as many as the widest vector has.
@@ -165,7 +165,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     for first in (0..N).step_by(S::LANES) {
         let mut stored = [f32::INFINITY; 2];
         // SAFETY: N floats hold a vector, two floats the least of its halves.
-        unsafe { s.store_least(stored.as_mut_ptr(), 1, s.load_f(numbers.as_ptr().add(first))) };
+        unsafe { s.store_z_min(stored.as_mut_ptr(), 1, s.load_f(numbers.as_ptr().add(first))) };
         for (k, x) in stored.into_iter().enumerate().take(S::LANES.div_ceil(8)) {
             least[first / 8 + k] = least[first / 8 + k].min(x);
         }
@@ -212,15 +212,15 @@ fn every_instruction_set_agrees_with_scalar() {
             count: core::array::from_fn(|lane| if lane % 4 == 3 { bits.next() % 65536 } else { bits.next() % 33 }),
             index: core::array::from_fn(|_| bits.next() % N as u32),
         };
-        let expected = run(Implementation::Scalar, AllOperations(input));
-        for &implementation in available() {
-            let got = run(implementation, AllOperations(input));
+        let expected = run(Level::capped(Implementation::Scalar), AllOperations(input));
+        for level in Level::all() {
+            let got = run(level, AllOperations(input));
             let same = expected == got;
-            assert!(same, "{implementation:?}, round {round}:\n{expected:x?}\n{got:x?}");
+            assert!(same, "{level:?}, round {round}:\n{expected:x?}\n{got:x?}");
         }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if available().contains(&Implementation::Avx2) {
-            let got = with_sixteen_lanes(|| run(Implementation::Avx2, AllOperations(input)));
+        if let Some(avx2) = Level::of(Implementation::Avx2) {
+            let got = with_sixteen_lanes(|| run(avx2, AllOperations(input)));
             assert!(expected == got, "two vectors of AVX2, round {round}:\n{expected:x?}\n{got:x?}");
         }
     }

@@ -8,7 +8,7 @@ use core::arch::wasm32::*;
 
 use super::compress::FOUR_LANES;
 use super::pair::Pair;
-use super::{Apart, Job, Simd, record, store_relaxed, strided};
+use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Simd128(());
@@ -49,7 +49,7 @@ impl Simd for Simd128 {
     type D = [v128; 2];
 
     #[inline(never)]
-    fn apart<J: Apart<Self>>(self, job: J) -> J::Output {
+    fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output {
         job.run(self)
     }
 
@@ -267,7 +267,7 @@ impl Simd for Simd128 {
         a
     }
     #[inline(always)]
-    unsafe fn store_least(self, p: *mut f32, _: usize, a: v128) {
+    unsafe fn store_z_min(self, p: *mut f32, _: usize, a: v128) {
         let halves = f32x4_pmin(a, i64x2_shuffle::<1, 1>(a, a));
         let least = f32x4_pmin(halves, i32x4_shuffle::<1, 1, 1, 1>(halves, halves));
         // SAFETY: the caller's contract.

@@ -1,0 +1,3 @@
+//! Queries of bounds: rectangles on the screen.
+
+pub(crate) mod rectangle;

@@ -1,0 +1,77 @@
+//! Exclusive access to some of a buffer's tiles.
+
+use super::{Buffer, CLEARED, TileRect, hiz};
+use crate::simd::{Simd, store_relaxed};
+
+/// Exclusive access to a rectangle of tiles: as long as it exists, nobody else writes them. What draws takes a region, so that
+/// one can only draw where one may.
+pub(crate) struct Region<'a> {
+    buffer: &'a Buffer,
+    tiles: TileRect,
+    /// How many tiles were drawn into since the coarse cells of the region were refreshed; `None` if the region is not made of
+    /// whole cells.
+    since_refresh: Option<&'a mut u32>,
+}
+
+impl<'a> Region<'a> {
+    /// All tiles of a buffer.
+    #[inline(always)]
+    pub fn whole(buffer: &'a mut Buffer) -> Self {
+        let buffer = &*buffer;
+        // SAFETY: the word belongs to the buffer, which is borrowed exclusively; nothing else refers to it.
+        let since_refresh = unsafe { &mut *buffer.since_refresh() };
+        Self { buffer, tiles: buffer.all_tiles(), since_refresh: Some(since_refresh) }
+    }
+
+    /// A rectangle of tiles; with `since_refresh`, it begins with a coarse cell and ends with one or at the buffer's end.
+    ///
+    /// # Safety
+    /// While the region exists, nobody else writes its tiles (and, with `since_refresh`, its coarse cells). Others may read
+    /// `z_min`, word by word; what else they read of these tiles they must discard.
+    #[inline(always)]
+    pub unsafe fn new(buffer: &'a Buffer, tiles: TileRect, since_refresh: Option<&'a mut u32>) -> Self {
+        Self { buffer, tiles, since_refresh }
+    }
+
+    #[inline(always)]
+    pub fn buffer(&self) -> &'a Buffer {
+        self.buffer
+    }
+
+    #[inline(always)]
+    pub fn tiles(&self) -> TileRect {
+        self.tiles
+    }
+
+    /// Whether the region is made of whole coarse cells, which are kept up to date.
+    #[inline(always)]
+    pub fn has_coarse_level(&self) -> bool {
+        self.since_refresh.is_some()
+    }
+
+    /// Counts tiles that were drawn into, each of a vector's height.
+    #[inline(always)]
+    pub fn count_drawn<S: Simd>(&mut self, s: S, tiles: usize) {
+        if let Some(since_refresh) = &mut self.since_refresh {
+            // SAFETY: by `new` or `whole`, nobody else writes the tiles and cells.
+            unsafe { hiz::count_drawn(s, self.buffer, self.tiles, tiles, since_refresh) };
+        }
+    }
+
+    /// Sets the tiles infinitely far. The region is made of whole coarse cells.
+    pub fn clear(&mut self) {
+        let Self { buffer, tiles, .. } = *self;
+        if let Some(since_refresh) = &mut self.since_refresh {
+            **since_refresh = 0;
+        }
+        // Blocks are whole: the lower tiles of the last row may lie below the screen.
+        for y in tiles.y0..tiles.y1.next_multiple_of(2) {
+            for x in tiles.x0..tiles.x1 {
+                // SAFETY: by `new` or `whole`, nobody else writes the tiles.
+                unsafe { store_relaxed(buffer.z_min_of(x, y), CLEARED) };
+            }
+        }
+        // SAFETY: as above, and the region is made of whole cells.
+        unsafe { hiz::clear(buffer, tiles) };
+    }
+}

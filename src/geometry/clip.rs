@@ -1,0 +1,189 @@
+//! The few triangles that cross the near plane or leave the guard band, one by one, in f64.
+//!
+//! Each plane is clipped against in turn (Sutherland and Hodgman 1974). A new vertex is computed from the
+//! inside end of its edge to the outside end, so that two triangles that share the edge get the same vertex. Vertices
+//! that need no clipping keep the screen coordinates that the vectors gave them, for the same reason.
+//!
+//! A new vertex is a mean of two that are as large as the triangle; where its w is so much smaller that rounding could
+//! move it by a quarter of a subpixel on the screen, the triangle is refused as if it were not finite.
+
+use super::camera::{Camera, FARTHEST_W, Facing};
+use super::coverage::Coverage;
+use crate::float_environment::round_ties_even;
+
+/// A triangle clipped by five planes has at most eight corners, which six triangles fan out from.
+const MAX_VERTICES: usize = 8;
+pub(crate) const MAX_TRIANGLES: usize = MAX_VERTICES - 2;
+
+/// What is left of a triangle.
+pub(crate) enum Clipped {
+    /// It lies outside.
+    Nothing,
+    /// A coordinate is NaN, infinite or too far for an occluder.
+    Dropped,
+    /// Part of an occludee cannot be projected: it may be seen.
+    Unprojectable,
+    Polygon(Polygon),
+}
+
+/// A convex polygon on the screen.
+pub(crate) struct Polygon {
+    corners: [[f32; 3]; MAX_VERTICES],
+    len: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Vertex {
+    clip: [f64; 3],
+    /// Where the vectors put it; NaN where they could not.
+    screen: [f32; 3],
+}
+
+/// Rounding of a new vertex's coordinates, relative to the triangle's largest: five planes, a few roundings each.
+const ROUNDING: f64 = 1.0 / (1_u64 << 48) as f64;
+
+const NO_VERTEX: Vertex = Vertex { clip: [0.0; 3], screen: [f32::NAN; 3] };
+
+/// Clips a triangle, given in clip space and as projected by the vectors (x is NaN where that failed).
+#[cold]
+#[inline(never)]
+pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], screen: &[[f32; 3]; 3]) -> Clipped {
+    let refused = if C::COUNTS_UNPROJECTABLE { Clipped::Unprojectable } else { Clipped::Dropped };
+    if clip.as_flattened().iter().any(|x| !x.is_finite()) {
+        return refused;
+    }
+    let all = |outside: fn([f32; 3]) -> bool| clip.iter().all(|&v| outside(v));
+    if all(|[x, _, w]| x < -w)
+        || all(|[x, _, w]| x > w)
+        || all(|[_, y, w]| y < -w)
+        || all(|[_, y, w]| y > w)
+        || all(|[_, _, w]| w <= 0.0)
+    {
+        return Clipped::Nothing;
+    }
+    if C::COUNTS_UNPROJECTABLE && camera.near_is_raised && clip.iter().any(|v| v[2] < camera.near) {
+        return refused;
+    }
+    if clip.iter().all(|v| v[2] < camera.near) {
+        return Clipped::Nothing;
+    }
+    if clip.iter().any(|v| v[2] > FARTHEST_W) {
+        return refused;
+    }
+
+    let mut corners = [NO_VERTEX; MAX_VERTICES];
+    for k in 0..3 {
+        corners[k] = Vertex { clip: clip[k].map(f64::from), screen: screen[k] };
+    }
+    let mut len = 3;
+    let (wide, high) = (
+        f64::from(camera.guard_band) / f64::from(camera.half_width),
+        f64::from(camera.guard_band) / f64::from(camera.half_height),
+    );
+    // Inside where a * x + b * y + c * w + d is not negative.
+    let planes = [
+        [0.0, 0.0, 1.0, -f64::from(camera.near)],
+        [1.0, 0.0, wide, 0.0],
+        [-1.0, 0.0, wide, 0.0],
+        [0.0, 1.0, high, 0.0],
+        [0.0, -1.0, high, 0.0],
+    ];
+    for plane in planes {
+        (corners, len) = against(plane, &corners, len);
+        if plane == planes[0] {
+            // On the near plane w is known; what rounding makes of it may be zero.
+            for v in corners[..len].iter_mut().filter(|v| v.screen[0].is_nan()) {
+                v.clip[2] = v.clip[2].max(f64::from(camera.near));
+            }
+        }
+    }
+    if len < 3 {
+        return Clipped::Nothing;
+    }
+    let largest = clip.as_flattened().iter().fold(0.0, |m: f64, x| m.max(f64::from(x.abs())));
+    let subpixels = f64::from(camera.half_width.max(camera.half_height));
+    let unsure = |v: &Vertex| v.screen[0].is_nan() && largest * ROUNDING * subpixels > 0.25 * v.clip[2];
+    if corners[..len].iter().any(unsure) {
+        return refused;
+    }
+    let mut polygon = Polygon { corners: [[0.0; 3]; MAX_VERTICES], len };
+    for (to, from) in polygon.corners.iter_mut().zip(&corners[..len]) {
+        *to = if from.screen[0].is_nan() { project(camera, from.clip) } else { from.screen };
+    }
+    Clipped::Polygon(polygon)
+}
+
+/// One plane's worth. A convex polygon gains at most one corner.
+fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize) -> ([Vertex; MAX_VERTICES], usize) {
+    let distance = |v: &Vertex| a * v.clip[0] + b * v.clip[1] + c * v.clip[2] + d;
+    let mut out = [NO_VERTEX; MAX_VERTICES];
+    let mut n = 0;
+    let mut push = |v: Vertex| {
+        // Rounding can make a sliver cross a plane more than twice; what does not fit is a point of the sliver.
+        if n < MAX_VERTICES {
+            out[n] = v;
+            n += 1;
+        }
+    };
+    for k in 0..len {
+        let (from, to) = (&corners[k], &corners[if k + 1 < len { k + 1 } else { 0 }]);
+        let (at_from, at_to) = (distance(from), distance(to));
+        if at_from >= 0.0 {
+            push(*from);
+        }
+        if (at_from >= 0.0) != (at_to >= 0.0) {
+            let (inside, outside, near, far) =
+                if at_from >= 0.0 { (from, to, at_from, at_to) } else { (to, from, at_to, at_from) };
+            let part = near / (near - far);
+            // A mean with two weights, neither of which loses what is small beside what is large.
+            let between = |k: usize| inside.clip[k] * (1.0 - part) + outside.clip[k] * part;
+            push(Vertex { clip: [between(0), between(1), between(2)], screen: [f32::NAN; 3] });
+        }
+    }
+    (out, n)
+}
+
+/// A new vertex to the screen, snapped.
+fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
+    let limit = f64::from(1 << 26);
+    let snap = |x: f64, scale: f32, half: f32| {
+        round_ties_even((x / w * f64::from(scale) + f64::from(half)).clamp(-limit, limit)) as f32
+    };
+    [snap(x, camera.half_width, camera.half_width), snap(y, camera.row_scale, camera.half_height), (1.0 / w) as f32]
+}
+
+impl Polygon {
+    /// The triangles of the polygon's fan that are on the screen and may face the eye, with their corners in set-up's order.
+    pub fn triangles<C: Coverage>(
+        &self,
+        camera: &Camera,
+        facing: Facing,
+    ) -> impl Iterator<Item = [[f32; 3]; 3]> + use<'_, C> {
+        let camera = *camera;
+        let kept = move |&k: &usize| self.faces::<C>(facing, k) && self.on_screen(&camera, k);
+        (1..self.len - 1).filter(kept).map(move |k| {
+            let [a, b, c] = [self.corners[0], self.corners[k], self.corners[k + 1]];
+            if facing.swap { [a, c, b] } else { [a, b, c] }
+        })
+    }
+
+    /// May triangle `k` of the fan face the eye?
+    fn faces<C: Coverage>(&self, facing: Facing, k: usize) -> bool {
+        let [[x0, y0, _], [x1, y1, _], [x2, y2, _]] = [self.corners[0], self.corners[k], self.corners[k + 1]];
+        let (dx1, dy1) = (f64::from(x1) - f64::from(x0), f64::from(y1) - f64::from(y0));
+        let (dx2, dy2) = (f64::from(x2) - f64::from(x0), f64::from(y2) - f64::from(y0));
+        let area = dx1 * dy2 - dx2 * dy1;
+        let area = if facing.swap { -area } else { area };
+        let slack = f64::from(C::CORNER_SHIFT) * (dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0);
+        facing.both || area > -slack
+    }
+
+    /// Does the box of triangle `k` of the fan overlap the screen?
+    fn on_screen(&self, camera: &Camera, k: usize) -> bool {
+        let overlaps = |axis: usize, half: f32| {
+            let [a, b, c] = [self.corners[0][axis], self.corners[k][axis], self.corners[k + 1][axis]];
+            a.max(b).max(c) > -2.0 && a.min(b).min(c) < 2.0 * half + 2.0
+        };
+        overlaps(0, camera.half_width) && overlaps(1, camera.half_height)
+    }
+}

@@ -1,0 +1,198 @@
+//! Draws into a region of a buffer.
+
+use core::marker::PhantomData;
+
+use super::{Memory, TriangleSink, begun_in, tiles_in};
+use crate::CullingResult;
+use crate::buffer::rules::{Rule, with_rule};
+use crate::buffer::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
+use crate::geometry::{Corner, Exact};
+use crate::raster::traverse::{Input, Workspace};
+use crate::raster::{Alive, Batch, HizScope, MAX_TILES, Setup, TileOp, setup, traverse};
+use crate::simd::{Outlined, Simd};
+use crate::statistics::Tally;
+
+/// Draws into a region.
+pub(crate) struct Draw<'a> {
+    region: Region<'a>,
+}
+
+impl<'a> Draw<'a> {
+    #[inline(always)]
+    pub fn new(region: Region<'a>) -> Self {
+        Self { region }
+    }
+
+    /// Updates the tiles of triangles. If `COUNT`: how many, and in how many the reference depth rose.
+    #[inline(always)]
+    fn update<T: Simd, const COUNT: bool>(
+        &mut self,
+        t: T,
+        alive: &Alive,
+        memory: &mut Memory<Workspace>,
+    ) -> (u64, u64) {
+        let (buffer, clip) = (self.region.buffer(), self.region.tiles());
+        let input = Input { buffer, clip, batch: &memory.batch, alive, lists: &mut memory.own };
+        // Outlined: what comes before does not depend on the rule, and is compiled once for all rules.
+        let (counts, tiles) = with_rule!(buffer.rule(), R => {
+            t.outlined(UpdateTiles { input, op: Update::<R, COUNT>::new(buffer) })
+        });
+        self.region.count_drawn(t, tiles);
+        counts
+    }
+}
+
+impl TriangleSink for Draw<'_> {
+    type Coverage = Exact;
+    type Memory = Workspace;
+
+    #[inline(always)]
+    fn scope(&self) -> HizScope {
+        HizScope { clip: self.region.tiles(), coarse: self.region.has_coarse_level() }
+    }
+
+    #[inline(always)]
+    fn submit<S: Simd>(
+        &mut self,
+        setup: Setup<'_, S>,
+        corners: [Corner<S>; 3],
+        active: S::M,
+        memory: &mut Memory<Workspace>,
+        tally: &mut Tally,
+    ) -> bool {
+        const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
+        let counts = self.region.buffer().statistics();
+        let alive = setup::set_up::<S, Exact>(setup, corners, active, !counts, &mut memory.batch);
+        if alive.rasterized == 0 {
+            return true;
+        }
+        if counts {
+            let (batch, clip): (&Batch, _) = (&memory.batch, self.region.tiles());
+            // Each bin of a screen is given the same triangles, which count once; a list has its own.
+            tally.rasterized += if self.region.has_coarse_level() {
+                begun_in(batch, alive.rasterized, clip)
+            } else {
+                u64::from(alive.rasterized.count_ones())
+            };
+            tally.traversed += tiles_in(batch, alive.rasterized, clip);
+            let (updated, merged) = self.update::<S, true>(setup.s, &alive, memory);
+            (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);
+        } else if alive.lanes != 0 {
+            self.update::<S, false>(setup.s, &alive, memory);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn result(&self, in_view: bool, _: bool) -> CullingResult {
+        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
+    }
+}
+
+/// Triangles whose tiles are updated.
+struct UpdateTiles<'a, O> {
+    input: Input<'a>,
+    op: O,
+}
+
+impl<T: Simd, R: Rule, const COUNT: bool> Outlined<T> for UpdateTiles<'_, Update<'_, R, COUNT>> {
+    type Output = ((u64, u64), usize);
+
+    #[inline(always)]
+    fn run(self, t: T) -> Self::Output {
+        let Self { input, mut op } = self;
+        traverse(t, input, &mut op);
+        op.done()
+    }
+}
+
+/// Updates tiles by a rule, and counts them if `COUNT`.
+struct Update<'a, R, const COUNT: bool> {
+    buffer: &'a Buffer,
+    updated: u64,
+    merged: u64,
+    tiles: usize,
+    /// What the next tiles add to both.
+    counts: u32,
+    /// The screen's edge crosses sub-tiles somewhere.
+    has_edge_masks: bool,
+    rule: PhantomData<R>,
+}
+
+impl<'a, R, const COUNT: bool> Update<'a, R, COUNT> {
+    #[inline(always)]
+    fn new(buffer: &'a Buffer) -> Self {
+        Self {
+            buffer,
+            updated: 0,
+            merged: 0,
+            tiles: 0,
+            counts: 0,
+            has_edge_masks: buffer.has_edge_masks(),
+            rule: PhantomData,
+        }
+    }
+
+    /// Tiles that were updated, and in which the reference depth rose; and how many were processed, of a vector's height.
+    #[inline(always)]
+    fn done(&self) -> ((u64, u64), usize) {
+        ((self.updated, self.merged), self.tiles)
+    }
+}
+
+impl<T: Simd, R: Rule, const COUNT: bool> TileOp<T> for Update<'_, R, COUNT> {
+    const PLANES: usize = R::PLANES;
+    type Coverage = Exact;
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, mut covered: T::I, depth: T::F) -> bool {
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        let inserted = unsafe {
+            if self.has_edge_masks
+                && let Some(outside) = self.buffer.edge_mask(at.x, row())
+            {
+                // A triangle with a pixel inside the screen covers all pixels outside.
+                let outside = t.load_i(outside);
+                covered = t.select_i(t.eq_i(covered, t.i(0)), t.i(0), t.or(covered, outside));
+            }
+            let mut planes = load::<T, R>(t, self.buffer, at, row);
+            let inserted = R::insert(t, &mut planes, covered, depth);
+            R::store(t, at.planes, &planes);
+            t.store_z_min(at.z_min, at.pitch, planes.z0);
+            inserted
+        };
+        // Four counts in the bytes of a word: for each of two tiles, whether any lane was updated, and whether any merged.
+        if COUNT {
+            let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
+            self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
+        }
+        true
+    }
+
+    #[inline(always)]
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool {
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        unsafe {
+            if ClearState::of::<T>(at).all_drawn() && R::replace(t, at.planes, depth) {
+                t.store_z_min(at.z_min, at.pitch, depth);
+                if COUNT {
+                    self.counts += if T::LANES == SUB_TILES { 0x0001_0001 } else { 0x0101_0101 };
+                }
+                return true;
+            }
+            self.tile(t, at, row, t.i(-1), depth)
+        }
+    }
+
+    #[inline(always)]
+    fn tiles_done(&mut self, tiles: usize) {
+        const { assert!(MAX_TILES < 256) }
+        self.tiles += tiles;
+        if !COUNT {
+            return;
+        }
+        let of = |byte: u32| u64::from(self.counts >> (8 * byte) & 0xff);
+        (self.updated, self.merged) = (self.updated + of(0) + of(1), self.merged + of(2) + of(3));
+        self.counts = 0;
+    }
+}

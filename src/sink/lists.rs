@@ -1,0 +1,71 @@
+//! Appends triangles to lists, one per bin of the screen.
+
+use super::{Memory, TriangleSink};
+use crate::CullingResult;
+use crate::bins::TriList;
+use crate::buffer::{TILE_HEIGHT, TILE_WIDTH, TileRect};
+use crate::geometry::{Corner, Exact};
+use crate::raster::{HizScope, Setup, bits, setup};
+use crate::simd::Simd;
+use crate::statistics::Tally;
+
+/// Appends triangles to the list of every bin that their bounds reach.
+pub(crate) struct AppendToLists<'b, 'c> {
+    lists: &'b mut [TriList<'c>],
+    bin_size: (u32, u32),
+    bins: (u32, u32),
+    /// Some list had no room.
+    pub full: bool,
+}
+
+impl<'b, 'c> AppendToLists<'b, 'c> {
+    /// `bins.0` by `bins.1` lists, row by row, of bins of `bin_size` pixels.
+    pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32)) -> Self {
+        assert_eq!(lists.len() as u64, u64::from(bins.0) * u64::from(bins.1));
+        Self { lists, bin_size, bins, full: false }
+    }
+}
+
+impl TriangleSink for AppendToLists<'_, '_> {
+    type Coverage = Exact;
+    type Memory = ();
+
+    #[inline(always)]
+    fn scope(&self) -> HizScope {
+        HizScope { clip: TileRect::NONE, coarse: false }
+    }
+
+    #[inline(always)]
+    fn submit<S: Simd>(
+        &mut self,
+        setup: Setup<'_, S>,
+        corners: [Corner<S>; 3],
+        active: S::M,
+        memory: &mut Memory<()>,
+        tally: &mut Tally,
+    ) -> bool {
+        let batch = &mut memory.batch;
+        let alive = setup::orient::<S, Exact>(setup, corners, active, batch);
+        tally.rasterized += u64::from(alive.rasterized.count_ones());
+        let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
+        for lane in bits(alive.lanes) {
+            // SAFETY: `orient` stores the corners.
+            let triangle = batch.corners.each_ref().map(|x| unsafe { x.get(lane) });
+            let [x0, x1, y0, y1] = batch.tiles(lane);
+            // The last column and row of bins reach to the screen's edge.
+            let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
+            let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
+            for y in row(y0)..=row(y1) {
+                for x in column(x0)..=column(x1) {
+                    self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
+                }
+            }
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn result(&self, in_view: bool, _: bool) -> CullingResult {
+        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
+    }
+}

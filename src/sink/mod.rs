@@ -1,0 +1,78 @@
+//! Where triangles go: into the buffer (draw), against it (mesh query), into lists or into the pool's bins.
+
+pub(crate) mod bin;
+pub(crate) mod draw;
+pub(crate) mod lists;
+pub(crate) mod query;
+
+pub(crate) use bin::{Bin, BinBounds, BinnedTriangles};
+pub(crate) use draw::Draw;
+pub(crate) use lists::AppendToLists;
+pub(crate) use query::Query;
+
+use core::mem::MaybeUninit;
+
+use crate::CullingResult;
+use crate::buffer::TileRect;
+use crate::geometry::{Corner, Coverage};
+use crate::raster::{Batch, HizScope, Setup, bits};
+use crate::simd::Simd;
+use crate::statistics::Tally;
+
+/// What takes triangles, a vector at a time, in order.
+pub(crate) trait TriangleSink {
+    type Coverage: Coverage;
+    /// Memory that it needs on the stack of a call; not initialised.
+    type Memory;
+
+    /// What of the hierarchy may be read before triangles are submitted.
+    fn scope(&self) -> HizScope;
+
+    /// Takes the triangles in `active`. False: no more are needed.
+    fn submit<S: Simd>(
+        &mut self,
+        setup: Setup<'_, S>,
+        corners: [Corner<S>; 3],
+        active: S::M,
+        memory: &mut Memory<Self::Memory>,
+        tally: &mut Tally,
+    ) -> bool;
+
+    /// The answer of the call. `in_view`: some triangle faces the eye and overlaps the screen; `stopped`: not all triangles
+    /// were submitted, because the sink needed no more or because one cannot be projected.
+    fn result(&self, in_view: bool, stopped: bool) -> CullingResult;
+}
+
+/// Memory of a call, not initialised.
+pub(crate) struct Memory<M> {
+    pub batch: Batch,
+    pub own: MaybeUninit<M>,
+}
+
+impl<M> Memory<M> {
+    #[inline(always)]
+    pub fn uninit() -> Self {
+        Self { batch: Batch::uninit(), own: MaybeUninit::uninit() }
+    }
+}
+
+/// How many of the triangles in `lanes` have the first tile of their bounds in a rectangle: each counts in one bin only.
+fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+    let begun = |&lane: &usize| {
+        let [x0, _, y0, _] = batch.tiles(lane);
+        (clip.x0..clip.x1).contains(&x0) && (clip.y0..clip.y1).contains(&y0)
+    };
+    bits(lanes).filter(begun).count() as u64
+}
+
+/// How many tiles the bounds of the triangles in `lanes` have inside a rectangle.
+fn tiles_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+    let mut tiles = 0;
+    for lane in bits(lanes) {
+        let [x0, x1, y0, y1] = batch.tiles(lane);
+        let wide = (x1 + 1).min(clip.x1).saturating_sub(x0.max(clip.x0));
+        let high = (y1 + 1).min(clip.y1).saturating_sub(y0.max(clip.y0));
+        tiles += u64::from(wide) * u64::from(high);
+    }
+    tiles
+}

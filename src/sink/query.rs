@@ -1,0 +1,178 @@
+//! Compares triangles with a buffer until one may be visible.
+
+use core::marker::PhantomData;
+
+use super::{Memory, TriangleSink, tiles_in};
+use crate::CullingResult;
+use crate::buffer::rules::{Rule, with_rule};
+use crate::buffer::{Buffer, SUB_TILES, TilePlace, load};
+use crate::geometry::{Conservative, Corner};
+use crate::raster::traverse::{Input, Workspace};
+use crate::raster::{HizScope, Setup, TileOp, setup, traverse};
+use crate::simd::{Outlined, Simd};
+use crate::statistics::Tally;
+
+/// Compares triangles with a buffer until one may be visible.
+pub(crate) struct Query<'a> {
+    buffer: &'a Buffer,
+    /// Some triangle touched a pixel, or was hidden before its edges were set up, which says that it is on the screen.
+    found: bool,
+}
+
+impl<'a> Query<'a> {
+    #[inline(always)]
+    pub fn new(buffer: &'a Buffer) -> Self {
+        Self { buffer, found: false }
+    }
+}
+
+impl TriangleSink for Query<'_> {
+    type Coverage = Conservative;
+    type Memory = Workspace;
+
+    #[inline(always)]
+    fn scope(&self) -> HizScope {
+        HizScope { clip: self.buffer.all_tiles(), coarse: false }
+    }
+
+    #[inline(always)]
+    fn submit<S: Simd>(
+        &mut self,
+        setup: Setup<'_, S>,
+        corners: [Corner<S>; 3],
+        active: S::M,
+        memory: &mut Memory<Workspace>,
+        tally: &mut Tally,
+    ) -> bool {
+        const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
+        let alive = &setup::set_up::<S, Conservative>(setup, corners, active, false, &mut memory.batch);
+        if alive.rasterized == 0 {
+            return true;
+        }
+        let (t, buffer, batch, lists) = (setup.s, self.buffer, &memory.batch, &mut memory.own);
+        let clip = buffer.all_tiles();
+        let input = Input { buffer, clip, batch, alive, lists };
+        let (stopped, touches) = with_rule!(buffer.rule(), R => {
+            t.outlined(CompareTiles { input, op: Compare::<R>::new(buffer) })
+        });
+        self.found |= touches || alive.rasterized != alive.lanes;
+        if !self.found && stopped.is_none() {
+            // Hidden tile by tile, or it touches no pixel: the first touched pixel tells. Which tiles are compared together
+            // depends on the instruction set, so that being hidden does not.
+            let input = Input { buffer, clip, batch, alive, lists };
+            self.found = t.outlined(TouchTiles { input });
+        }
+        // Triangles after the first that may be visible do not count, however many a vector holds.
+        let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
+        tally.rasterized += u64::from(counted.count_ones());
+        if buffer.statistics() {
+            tally.traversed += tiles_in(batch, counted, clip);
+        }
+        stopped.is_none()
+    }
+
+    #[inline(always)]
+    fn result(&self, in_view: bool, stopped: bool) -> CullingResult {
+        if stopped {
+            CullingResult::Visible
+        } else if in_view && self.found {
+            CullingResult::Occluded
+        } else {
+            CullingResult::ViewCulled
+        }
+    }
+}
+
+/// Triangles that are compared: the lane at which one may be visible, and whether any pixel was touched.
+struct CompareTiles<'a, O> {
+    input: Input<'a>,
+    op: O,
+}
+
+impl<T: Simd, R: Rule> Outlined<T> for CompareTiles<'_, Compare<'_, R>> {
+    type Output = (Option<u32>, bool);
+
+    #[inline(always)]
+    fn run(self, t: T) -> Self::Output {
+        let Self { input, mut op } = self;
+        (traverse(t, input, &mut op), op.touches)
+    }
+}
+
+/// Do triangles touch a pixel?
+struct TouchTiles<'a> {
+    input: Input<'a>,
+}
+
+impl<T: Simd> Outlined<T> for TouchTiles<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self, t: T) -> bool {
+        traverse(t, self.input, &mut Touch).is_some()
+    }
+}
+
+/// Stops at the first tile with a touched pixel.
+struct Touch;
+
+impl<T: Simd> TileOp<T> for Touch {
+    const PLANES: usize = 0;
+    type Coverage = Conservative;
+
+    /// All tiles.
+    #[inline(always)]
+    fn is_candidate(t: T, z_min: T::F, _: T::F) -> T::M {
+        t.eq(z_min, z_min)
+    }
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, _: TilePlace, _: impl Fn() -> u32, covered: T::I, _: T::F) -> bool {
+        nothing(t, covered)
+    }
+
+    #[inline(always)]
+    unsafe fn whole_tile(&mut self, _: T, _: TilePlace, _: impl Fn() -> u32, _: T::F) -> bool {
+        false
+    }
+}
+
+/// Is no pixel covered?
+#[inline(always)]
+fn nothing<T: Simd>(t: T, covered: T::I) -> bool {
+    t.all(t.eq_i(covered, t.i(0)))
+}
+
+/// Stops at the first tile where something may be visible.
+struct Compare<'a, R> {
+    buffer: &'a Buffer,
+    /// Some pixel was touched.
+    touches: bool,
+    rule: PhantomData<R>,
+}
+
+impl<'a, R> Compare<'a, R> {
+    #[inline(always)]
+    fn new(buffer: &'a Buffer) -> Self {
+        Self { buffer, touches: false, rule: PhantomData }
+    }
+}
+
+impl<T: Simd, R: Rule> TileOp<T> for Compare<'_, R> {
+    const PLANES: usize = R::PLANES;
+    type Coverage = Conservative;
+
+    #[inline(always)]
+    unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, covered: T::I, depth: T::F) -> bool {
+        self.touches |= !nothing(t, covered);
+        // SAFETY: the caller's contract; the buffer was made for the rule `R`.
+        let hidden = unsafe { R::hides(t, &load::<T, R>(t, self.buffer, at, row), covered, depth) };
+        t.all(hidden)
+    }
+
+    #[inline(always)]
+    unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool {
+        // SAFETY: the caller's contract.
+        unsafe { self.tile(t, at, row, t.i(-1), depth) }
+    }
+}

@@ -1,0 +1,94 @@
+//! The projected vertices of one chunk of triangles, on the stack of a call: nothing is allocated, nothing depends on the mesh's
+//! size, and threads share nothing.
+
+use core::mem::MaybeUninit;
+
+use crate::simd::MAX_LANES;
+
+/// Vertices of a chunk.
+pub(super) const CHUNK_VERTICES: usize = 768;
+/// Triangles of a chunk.
+pub(super) const CHUNK_TRIANGLES: usize = 512;
+
+/// Pages of vertices between the least and the largest index of a chunk (see `pages.rs`).
+pub(super) const PAGES: usize = 2048;
+/// The slot of a page that is not in the scratch.
+pub(super) const NOT_LOADED: u16 = u16::MAX;
+
+/// Where each page is in the scratch. Between chunks none is.
+pub(super) struct PageTable {
+    slots: [u16; PAGES],
+    ready: bool,
+}
+
+impl PageTable {
+    /// Nothing but the flag has to be written before it is used.
+    #[inline(always)]
+    pub fn clear(table: &mut MaybeUninit<Self>) {
+        // SAFETY: it is written, not read.
+        unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
+    }
+
+    /// The table, with no page in the scratch.
+    pub fn of(table: &mut MaybeUninit<Self>) -> &mut [u16; PAGES] {
+        // SAFETY: the flag was written by `clear`, and the slots are before they are used.
+        unsafe {
+            let table = table.as_mut_ptr();
+            let slots = &raw mut (*table).slots;
+            if !(*table).ready {
+                slots.write([NOT_LOADED; PAGES]);
+                (*table).ready = true;
+            }
+            &mut *slots
+        }
+    }
+}
+
+/// x and y of each vertex in 1/256 pixel, whole numbers, and 1/w; or, as a NaN for x, the marks of a vertex that has to
+/// be clipped. Four floats per vertex, so that a vector of corners is loaded without gathering.
+#[repr(C, align(64))]
+pub(crate) struct Scratch {
+    vertices: [MaybeUninit<[f32; 4]>; CHUNK_VERTICES + 2 * MAX_LANES],
+    /// Where the corners of the chunk's triangles are, if not in the order of the mesh.
+    pub local: [MaybeUninit<u32>; 3 * CHUNK_TRIANGLES],
+    pub(super) table: MaybeUninit<PageTable>,
+}
+
+impl Scratch {
+    #[inline(always)]
+    pub fn uninit() -> MaybeUninit<Self> {
+        MaybeUninit::uninit()
+    }
+
+    /// All of it is `MaybeUninit`, so that it may be used as it comes.
+    #[inline(always)]
+    pub fn of(memory: &mut MaybeUninit<Self>) -> &mut Self {
+        // SAFETY: every field is `MaybeUninit` or an array of it, which needs no initialisation.
+        let scratch = unsafe { memory.assume_init_mut() };
+        PageTable::clear(&mut scratch.table);
+        scratch
+    }
+
+    /// The address of vertex `local`'s x, which may be any number.
+    #[inline(always)]
+    pub fn vertex(&mut self, local: usize) -> *mut f32 {
+        self.vertices.as_mut_ptr().wrapping_add(local).cast()
+    }
+
+    /// The first `n` of the corners' local numbers.
+    ///
+    /// # Safety
+    /// They were written.
+    #[inline(always)]
+    pub unsafe fn local(&self, n: usize) -> &[u32] {
+        let local = &self.local[..n];
+        // SAFETY: the caller's contract.
+        unsafe { core::slice::from_raw_parts(local.as_ptr().cast(), n) }
+    }
+
+    /// The address that vertex 0 of the mesh would have if vertex `base` is the first here.
+    #[inline(always)]
+    pub fn vertex_zero(&self, base: u32) -> *const f32 {
+        self.vertices.as_ptr().wrapping_sub(base as usize).cast()
+    }
+}
