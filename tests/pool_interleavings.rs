@@ -191,7 +191,7 @@ fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Workers, &
         let workers = Arc::new(Workers::new(max_jobs));
         let target = Arc::new(Target::new(bins));
         workers.set_target(Some(target.clone()));
-        let workers: Vec<_> = (0..threads)
+        let threads: Vec<_> = (0..threads)
             .map(|number| {
                 let workers = workers.clone();
                 thread::spawn(move || workers.work(number))
@@ -204,7 +204,7 @@ fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Workers, &
             assert_eq!(*drawn.lock().unwrap(), expected);
         }
         workers.stop();
-        workers.into_iter().for_each(|worker| worker.join().unwrap());
+        threads.into_iter().for_each(|thread| thread.join().unwrap());
     });
 }
 

@@ -187,3 +187,95 @@ impl Polygon {
         overlaps(0, camera.half_width) && overlaps(1, camera.half_height)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+
+    use super::*;
+    use crate::YAxis;
+    use crate::geometry::{Conservative, Exact};
+
+    const NOT_PROJECTED: [[f32; 3]; 3] = [[f32::NAN; 3]; 3];
+
+    fn camera() -> Camera {
+        Camera::new(640, 400, YAxis::Down, 0.5)
+    }
+
+    fn polygon<C: Coverage>(clip: &[[f32; 3]; 3]) -> Option<Vec<[f32; 3]>> {
+        match triangle::<C>(&camera().with_guard_band(C::GUARD_BAND), clip, &NOT_PROJECTED) {
+            Clipped::Polygon(polygon) => Some(polygon.corners[..polygon.len].to_vec()),
+            _ => None,
+        }
+    }
+
+    fn vertex(rng: &mut Rng) -> [f32; 3] {
+        [rng.f32() * 8.0 - 4.0, rng.f32() * 8.0 - 4.0, rng.f32() * 6.0 - 2.0]
+    }
+
+    #[test]
+    fn what_remains_lies_between_the_near_plane_and_the_guard_band() {
+        let mut rng = Rng::with_seed(1);
+        let mut polygons = 0;
+        for _ in 0..10_000 {
+            let clip = [vertex(&mut rng), vertex(&mut rng), vertex(&mut rng)];
+            let Some(corners) = polygon::<Conservative>(&clip) else { continue };
+            polygons += 1;
+            for [x, y, z] in corners {
+                // Half a subpixel for snapping.
+                let limit = Conservative::GUARD_BAND + 0.5;
+                assert!((x - 320.0 * 256.0).abs() <= limit && (y - 200.0 * 256.0).abs() <= limit, "{x} {y}");
+                assert!(z > 0.0 && z <= 2.0, "1/w of the near plane is 2: {z}");
+                assert!(x == x.round() && y == y.round());
+            }
+        }
+        assert!(polygons > 1_000);
+    }
+
+    /// The new vertex of an edge must be the same in both triangles that share it.
+    #[test]
+    fn a_shared_edge_is_cut_at_the_same_point_from_both_sides() {
+        let mut rng = Rng::with_seed(2);
+        let mut compared = 0;
+        for _ in 0..10_000 {
+            let [a, b, c, d] = core::array::from_fn(|_| vertex(&mut rng));
+            // The edge crosses the near plane, and nothing else.
+            let inside = |v: [f32; 3]| v[2] >= 0.5;
+            if inside(a) == inside(b) || !inside(c) || !inside(d) {
+                continue;
+            }
+            let (Some(left), Some(right)) = (polygon::<Exact>(&[a, b, c]), polygon::<Exact>(&[b, a, d])) else {
+                continue;
+            };
+            let on_near = |p: &[[f32; 3]]| p.iter().filter(|v| v[2] == 2.0).copied().collect::<Vec<_>>();
+            let (left, right) = (on_near(&left), on_near(&right));
+            assert!(left.iter().any(|v| right.contains(v)), "{left:?} {right:?}");
+            compared += 1;
+        }
+        assert!(compared > 500);
+    }
+
+    #[test]
+    fn what_lies_outside_or_is_no_number_is_told_apart() {
+        let nothing = [[-3.0, 0.0, 1.0], [-4.0, 1.0, 1.0], [-5.0, 0.0, 2.0]];
+        assert!(matches!(triangle::<Exact>(&camera(), &nothing, &NOT_PROJECTED), Clipped::Nothing));
+        let behind = [[0.0, 0.0, 0.25], [0.1, 0.0, 0.25], [0.0, 0.1, 0.1]];
+        assert!(matches!(triangle::<Exact>(&camera(), &behind, &NOT_PROJECTED), Clipped::Nothing));
+        for bad in [f32::NAN, f32::INFINITY, 1e38] {
+            let clip = [[0.0, 0.0, 1.0], [0.5, 0.0, 1.0], [0.0, 0.5, bad]];
+            assert!(matches!(triangle::<Exact>(&camera(), &clip, &NOT_PROJECTED), Clipped::Dropped), "{bad}");
+            let answer = triangle::<Conservative>(&camera(), &clip, &NOT_PROJECTED);
+            assert!(matches!(answer, Clipped::Unprojectable), "{bad}");
+        }
+    }
+
+    #[test]
+    fn vertices_that_were_projected_stay_where_they_are() {
+        let clip = [[0.0, 0.0, 1.0], [0.5, 0.0, 1.0], [0.0, 0.5, 0.25]];
+        let screen = [[1234.0, 777.0, 1.0], [4321.0, 777.0, 1.0], [f32::NAN; 3]];
+        let Clipped::Polygon(polygon) = triangle::<Exact>(&camera(), &clip, &screen) else { panic!("it is in view") };
+        let corners = &polygon.corners[..polygon.len];
+        assert_eq!(corners.len(), 4);
+        assert!(corners.contains(&screen[0]) && corners.contains(&screen[1]));
+    }
+}

@@ -79,3 +79,104 @@ pub(crate) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
 pub(crate) fn bit_where<S: Simd>(s: S, m: S::M, bit: u32) -> S::I {
     s.select_i(m, s.i(bit as i32), s.i(0))
 }
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+
+    use super::*;
+    use crate::geometry::{Conservative, Coverage};
+    use crate::simd::{Job, Level, MAX_LANES, run};
+    use crate::{Implementation, YAxis};
+
+    struct Project<'a>(&'a Camera, &'a [[f32; 3]; MAX_LANES]);
+
+    impl Job for Project<'_> {
+        type Output = [[f32; 3]; MAX_LANES];
+
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) -> Self::Output {
+            let mut out = [[0.0; 3]; MAX_LANES];
+            for first in (0..MAX_LANES).step_by(S::LANES) {
+                let mut lanes = [[0.0_f32; MAX_LANES]; 3];
+                for k in 0..3 {
+                    for lane in 0..S::LANES {
+                        lanes[k][lane] = self.1[first + lane][k];
+                    }
+                }
+                // SAFETY: sixteen floats hold a vector.
+                unsafe {
+                    let v = project(s, self.0, [0, 1, 2].map(|k| s.load_f(lanes[k].as_ptr())));
+                    for k in 0..3 {
+                        s.store_f(lanes[k].as_mut_ptr(), v[k]);
+                    }
+                }
+                for lane in 0..S::LANES {
+                    out[first + lane] = [lanes[0][lane], lanes[1][lane], lanes[2][lane]];
+                }
+            }
+            out
+        }
+    }
+
+    fn vertex(rng: &mut Rng) -> [f32; 3] {
+        let size = (rng.f32() * 20.0 - 4.0).exp2();
+        let w = (rng.f32() * 40.0 - 12.0).exp2() * if rng.u8(..8) == 0 { -1.0 } else { 1.0 };
+        [(rng.f32() - 0.5) * size * w, (rng.f32() - 0.5) * size * w, w]
+    }
+
+    /// Within the guard band of queries a snapped vertex is at most 1.6 subpixels from where it is in exact arithmetic.
+    #[test]
+    fn regular_vertices_are_where_double_precision_puts_them() {
+        let mut rng = Rng::with_seed(3);
+        for (width, height, y_axis) in [(1, 1, YAxis::Up), (1920, 1080, YAxis::Down), (16_384, 16_384, YAxis::Up)] {
+            let camera = Camera::new(width, height, y_axis, 0.1).with_guard_band(Conservative::GUARD_BAND);
+            let mut regular = 0;
+            for _ in 0..2_000 {
+                let vertices = core::array::from_fn(|_| vertex(&mut rng));
+                let screen = run(Level::best(), Project(&camera, &vertices));
+                for ([x, y, w], [column, row, z]) in vertices.into_iter().zip(screen) {
+                    if column.is_nan() {
+                        continue;
+                    }
+                    regular += 1;
+                    let expected = |v: f32, scale: f32, half: f32| {
+                        f64::from(v) / f64::from(w) * f64::from(scale) + f64::from(half)
+                    };
+                    assert!((f64::from(column) - expected(x, camera.half_width, camera.half_width)).abs() < 1.6);
+                    assert!((f64::from(row) - expected(y, camera.row_scale, camera.half_height)).abs() < 1.6);
+                    assert_eq!(z, 1.0 / w);
+                    assert!(w >= 0.1 && column == column.round() && row == row.round());
+                }
+            }
+            assert!(regular > 1_000);
+        }
+    }
+
+    #[test]
+    fn other_vertices_are_marked_with_the_planes_that_they_are_outside_of() {
+        let camera = Camera::new(640, 400, YAxis::Down, 0.5);
+        let mut vertices = [[0.0, 0.0, 1.0]; MAX_LANES];
+        let cases = [
+            ([0.0, 0.0, 0.25], outcode::NEAR),
+            ([-1.0, 0.0, 0.25], outcode::NEAR | outcode::LEFT),
+            ([1e6, 0.0, 1.0], outcode::RIGHT),
+            ([0.0, -1e6, 1.0], outcode::BELOW),
+            ([0.0, 1e6, 1.0], outcode::ABOVE),
+            ([f32::NAN, 0.0, 1.0], 0),
+            ([0.0, f32::INFINITY, 1.0], 0),
+            ([0.0, 0.0, f32::NAN], 0),
+        ];
+        for (vertex, (case, _)) in vertices.iter_mut().zip(cases) {
+            *vertex = case;
+        }
+        for level in Level::all() {
+            let screen = run(level, Project(&camera, &vertices));
+            for ([x, ..], (case, planes)) in screen.into_iter().zip(cases) {
+                assert_eq!(x.to_bits(), outcode::MARK | planes, "{level:?} {case:?}");
+            }
+            assert_eq!(screen[cases.len()], [320.0 * 256.0, 200.0 * 256.0, 1.0]);
+        }
+        assert_eq!(run(Level::capped(Implementation::Scalar), Project(&camera, &vertices))[15][2], 1.0);
+    }
+}

@@ -286,3 +286,160 @@ fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z:
         s.select(second, y[2], s.select(third, z[2], x[2])),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+
+    use super::*;
+    use crate::buffer::Buffer;
+    use crate::geometry::{Conservative, Exact};
+    use crate::raster::bits;
+    use crate::simd::{Job, Level, MAX_LANES, run};
+    use crate::{Allocator, UpdateRule};
+
+    type Triangle = [[f32; 3]; 3];
+
+    /// Sets up a vector of triangles and hands over, for each that counts, its number and its batch's lane.
+    struct SetUp<'a, F>(&'a Buffer, &'a [Triangle; MAX_LANES], F);
+
+    struct Checked<'a, C, F>(SetUp<'a, F>, core::marker::PhantomData<C>);
+
+    impl<C: Coverage, F: FnMut(&Triangle, &Batch, usize)> Job for Checked<'_, C, F> {
+        type Output = ();
+
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) {
+            let SetUp(buffer, triangles, mut check) = self.0;
+            let scope = HizScope { clip: buffer.all_tiles(), coarse: false };
+            for first in (0..MAX_LANES).step_by(S::LANES) {
+                let mut lanes = [[0.0_f32; MAX_LANES]; 9];
+                for (k, lanes) in lanes.iter_mut().enumerate() {
+                    for lane in 0..S::LANES {
+                        lanes[lane] = triangles[first + lane][k / 3][k % 3];
+                    }
+                }
+                // SAFETY: sixteen floats hold a vector.
+                let corner = |k: usize| [0, 1, 2].map(|j| unsafe { s.load_f(lanes[3 * k + j].as_ptr()) });
+                let mut batch = Batch::uninit();
+                let setup = Setup { s, buffer, both_sides: false, scope };
+                let corners = [corner(0), corner(1), corner(2)];
+                let alive = set_up::<S, C>(setup, corners, s.first(S::LANES), false, &mut batch);
+                for lane in bits(alive.lanes) {
+                    check(&triangles[first + lane], &batch, lane);
+                }
+            }
+        }
+    }
+
+    fn triangles(rng: &mut Rng, size: i32, around: i32) -> [Triangle; MAX_LANES] {
+        core::array::from_fn(|_| {
+            let mut corner =
+                || [rng.i32(around - size..=around + size) as f32, rng.i32(-size..=size) as f32, 0.1 + rng.f32()];
+            let (a, b, c) = (corner(), corner(), corner());
+            [a, b, c]
+        })
+    }
+
+    fn cross(a: [f32; 3], b: [f32; 3], x: i128, y: i128) -> i128 {
+        let [ax, ay, bx, by] = [a[0], a[1], b[0], b[1]].map(|x| x as i128);
+        (bx - ax) * (y - ay) - (x - ax) * (by - ay)
+    }
+
+    /// A row's events against the exact top-left rule at every pixel near them.
+    #[test]
+    fn events_are_exact() {
+        let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+        for level in Level::all() {
+            let mut rng = Rng::with_seed(4);
+            let mut rows = 0;
+            for size in [40, 300, 5_000, 100_000, 8_000_000, 60_000_000] {
+                for _ in 0..60 {
+                    let triangles = triangles(&mut rng, size, 80_000);
+                    let check = |t: &Triangle, batch: &Batch, lane: usize| {
+                        // SAFETY: set-up stored the lane.
+                        let get = |lanes: &crate::raster::batch::Lanes<f64>| unsafe { lanes.get(lane) };
+                        let (row0, row1) = unsafe { (batch.row0.get(lane) as i64, batch.row1.get(lane) as i64) };
+                        for row in [row0, (row0 + row1) / 2, row1 - 1] {
+                            let at = |c: f64, slope: f64| (c + slope * row as f64).clamp(-1.0, 641.0).floor() as i128;
+                            let left = at(get(&batch.left), get(&batch.left_slope))
+                                .max(at(get(&batch.middle_left), get(&batch.middle_slope)));
+                            let right = at(get(&batch.right), get(&batch.right_slope))
+                                .min(at(get(&batch.middle_right), get(&batch.middle_slope)));
+                            for pixel in [left - 1, left, left + 1, right - 1, right, right + 1] {
+                                if !(0..640).contains(&pixel) {
+                                    continue;
+                                }
+                                let (x, y) = (256 * pixel + 128, 256 * i128::from(row) + 128);
+                                let covered = (0..3).all(|k| {
+                                    let (a, b) = (t[k], t[(k + 1) % 3]);
+                                    let side = cross(a, b, x, y);
+                                    // Clockwise in rows that run down: a top edge runs right, a left edge runs up.
+                                    let top_left = b[1] < a[1] || (b[1] == a[1] && b[0] > a[0]);
+                                    side > 0 || (side == 0 && top_left)
+                                });
+                                assert_eq!(
+                                    (left..right).contains(&pixel),
+                                    covered,
+                                    "{level:?} {t:?} row {row} pixel {pixel}"
+                                );
+                            }
+                            rows += 1;
+                        }
+                    };
+                    run(level, Checked::<Exact, _>(SetUp(&buffer, &triangles, check), core::marker::PhantomData));
+                }
+            }
+            assert!(rows > 3_000, "{rows}");
+        }
+    }
+
+    /// The depth bound at every corner of a few sub-tiles against the plane in f64.
+    fn bounds_hold<C: Coverage>(size: i32, holds: impl Fn(f64, f64) -> bool) {
+        let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+        for level in Level::all() {
+            let (mut rng, mut compared) = (Rng::with_seed(5), 0);
+            for _ in 0..100 {
+                let triangles = triangles(&mut rng, size, 80_000);
+                let check = |t: &Triangle, batch: &Batch, lane: usize| {
+                    let [[x0, y0, z0], [x1, y1, z1], [x2, y2, z2]] = t.map(|v| v.map(f64::from));
+                    let area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+                    if area < 1e4 {
+                        return;
+                    }
+                    let across = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / area;
+                    let down = ((x1 - x0) * (z2 - z0) - (x2 - x0) * (z1 - z0)) / area;
+                    // SAFETY: set-up stored the lane.
+                    let [z, z_across, z_down] =
+                        unsafe { [batch.z.get(lane), batch.z_across.get(lane), batch.z_down.get(lane)] };
+                    let [tile_x0, _, tile_y0, _] = batch.tiles(lane);
+                    for (column, row) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
+                        let bound = f64::from(z + z_down * row as f32 + z_across * column as f32);
+                        for (x, y) in [(0, 0), (8, 0), (0, 4), (8, 4)] {
+                            let px = f64::from((tile_x0 * 32 + column * 8 + x) * 256);
+                            let py = f64::from((tile_y0 * 8 + row * 4 + y) * 256);
+                            assert!(holds(bound, z0 + across * (px - x0) + down * (py - y0)), "{level:?} {t:?}");
+                        }
+                    }
+                    compared += 1;
+                };
+                run(level, Checked::<C, _>(SetUp(&buffer, &triangles, check), core::marker::PhantomData));
+            }
+            assert!(compared > 100, "{compared}");
+        }
+    }
+
+    #[test]
+    fn a_draw_s_depth_bound_is_never_nearer_than_the_plane() {
+        for size in [2_000, 50_000, 4_000_000] {
+            bounds_hold::<Exact>(size, |bound, plane| bound <= plane);
+        }
+    }
+
+    #[test]
+    fn a_query_s_depth_bound_is_never_farther_than_the_plane() {
+        for size in [2_000, 50_000, 4_000_000] {
+            bounds_hold::<Conservative>(size, |bound, plane| bound >= plane);
+        }
+    }
+}

@@ -157,3 +157,104 @@ fn holds_centre<S: Simd>(s: S, min: S::F, max: S::F, size: u32) -> S::M {
     let end = s.sra::<8>(s.add_i(s.round(max), s.i(127)));
     s.gt_i(s.min_i(end, s.i(size as i32)), s.max_i(first, s.i(0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+
+    use super::*;
+    use crate::geometry::{Conservative, Exact};
+    use crate::simd::{Job, Level, run};
+    use crate::{BackfaceWinding, YAxis};
+
+    const SIZE: (u32, u32) = (64, 48);
+    /// Three corners for each of sixteen triangles.
+    type Corners = [[[f32; 2]; 3]; MAX_LANES];
+
+    struct Cull<'a, C>(&'a Corners, Facing, core::marker::PhantomData<C>);
+
+    impl<C: Coverage> Job for Cull<'_, C> {
+        /// For each triangle, whether it is kept; and whether any is in view.
+        type Output = ([bool; MAX_LANES], bool);
+
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) -> Self::Output {
+            let camera = Camera::new(SIZE.0, SIZE.1, YAxis::Down, 0.0);
+            let mut memory = Scratch::uninit();
+            let scratch = Scratch::of(&mut memory);
+            for (k, [x, y]) in self.0.as_flattened().iter().enumerate() {
+                // SAFETY: the scratch has room for more vertices.
+                unsafe { scratch.vertex(k).cast::<[f32; 4]>().write([*x, *y, 1.0, 0.0]) };
+            }
+            let indices: [u32; 3 * MAX_LANES] = core::array::from_fn(|k| k as u32);
+            let (mut kept, mut in_view) = ([false; MAX_LANES], false);
+            for first in (0..MAX_LANES).step_by(S::LANES) {
+                // SAFETY: the triangles' vertices are in the scratch.
+                let packet = unsafe { Packet::new(s, &indices, first, S::LANES, Numbering::From(0), self.1, scratch) };
+                let culled = packet.cull::<C>(s, SIZE, &camera, self.1);
+                assert_eq!(culled.irregular, 0);
+                in_view |= culled.in_view;
+                for lane in 0..S::LANES {
+                    kept[first + lane] = s.mask_bits(culled.kept) >> lane & 1 == 1;
+                }
+            }
+            (kept, in_view)
+        }
+    }
+
+    fn area([[x0, y0], [x1, y1], [x2, y2]]: [[f32; 2]; 3]) -> i64 {
+        let [x0, y0, x1, y1, x2, y2] = [x0, y0, x1, y1, x2, y2].map(|x| x as i64);
+        (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    }
+
+    /// Does the bounding box hold the centre of a pixel on the screen?
+    fn holds_a_centre(t: [[f32; 2]; 3]) -> bool {
+        [SIZE.0, SIZE.1].into_iter().enumerate().all(|(axis, size)| {
+            let v = t.map(|v| v[axis] as i64);
+            let (min, max) = (*v.iter().min().unwrap(), *v.iter().max().unwrap());
+            (0..i64::from(size)).any(|pixel| min <= 256 * pixel + 128 && 256 * pixel + 128 < max)
+        })
+    }
+
+    #[test]
+    fn what_is_culled_covers_no_pixel_and_little_else_is_kept() {
+        let camera = Camera::new(SIZE.0, SIZE.1, YAxis::Down, 0.0);
+        for winding in [BackfaceWinding::Clockwise, BackfaceWinding::CounterClockwise, BackfaceWinding::None] {
+            let facing = Facing::new(winding, &camera);
+            for level in Level::all() {
+                let mut rng = Rng::with_seed(6);
+                let (mut kept_ones, mut culled_ones) = (0, 0);
+                for _ in 0..400 {
+                    let size = 1 << rng.u32(4..14);
+                    let corners: Corners = core::array::from_fn(|_| {
+                        let (x, y) = (rng.i32(-2_000..18_000), rng.i32(-2_000..14_000));
+                        core::array::from_fn(|_| [(x + rng.i32(0..size)) as f32, (y + rng.i32(0..size)) as f32])
+                    });
+                    let (exact, _) = run(level, Cull::<Exact>(&corners, facing, core::marker::PhantomData));
+                    let (conservative, _) =
+                        run(level, Cull::<Conservative>(&corners, facing, core::marker::PhantomData));
+                    for (k, &t) in corners.iter().enumerate() {
+                        let area = if facing.swap { -area(t) } else { area(t) };
+                        let faces = facing.both || area > 0;
+                        let expected = faces && holds_a_centre(t);
+                        assert!(exact[k] || !expected, "{level:?} {winding:?} {t:?} is culled");
+                        // In f32 only slivers are unclear.
+                        let clearly_away = !facing.both && area < -1_000;
+                        assert!(
+                            !exact[k] || (holds_a_centre(t) && !clearly_away),
+                            "{level:?} {winding:?} {t:?} is kept"
+                        );
+                        let on_screen = |axis: usize, size: u32| {
+                            t.iter().any(|v| v[axis] > 0.0) && t.iter().any(|v| v[axis] < 256.0 * size as f32)
+                        };
+                        let touches = faces && on_screen(0, SIZE.0) && on_screen(1, SIZE.1);
+                        assert!(conservative[k] || !touches, "{level:?} {winding:?} {t:?} is culled from a query");
+                        kept_ones += usize::from(exact[k]);
+                        culled_ones += usize::from(!exact[k]);
+                    }
+                }
+                assert!(kept_ones > 500 && culled_ones > 500, "{kept_ones} {culled_ones}");
+            }
+        }
+    }
+}
