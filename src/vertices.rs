@@ -59,7 +59,7 @@ pub(crate) fn vertex_count(bytes: usize, layout: VertexLayout) -> Result<usize, 
     })
 }
 
-/// The pointer form that the pipeline reads. Whoever makes one vouches that every vertex that an
+/// The pointer form that the kernel reads. Whoever makes one vouches that every vertex that an
 /// index names can be read at `base + index * stride`, `+ offset_y` and `+ offset_zw`.
 #[derive(Clone, Copy)]
 pub(crate) struct VertexSource {

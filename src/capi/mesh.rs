@@ -1,4 +1,4 @@
-//! The arguments that describe a mesh, as they come from C and as the pipeline takes them.
+//! The arguments that describe a mesh, as they come from C and as the kernel wants them.
 
 use glam::Mat4;
 
