@@ -2,7 +2,7 @@
 //
 //     demo SCENE RESULT [highest instruction set: a number of MaskedOcclusionCulling::Implementation]
 //
-// `cargo run --release --example demo` makes the scene, compiles and runs this program, and draws what it found.
+// `cargo run --release -p demo` makes the scene, compiles and runs this program, and draws what it found.
 #include "MaskedOcclusionCulling.h"
 
 #include <algorithm>
