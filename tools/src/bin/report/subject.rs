@@ -5,9 +5,11 @@ use std::path::Path;
 use fastrand::Rng;
 use glam::{Mat4, Vec3, vec3};
 
-use crate::{Result, blocks, file_cameras, hall, load, split, town};
+use crate::{blocks, file_cameras, hall};
 use demo::camera::{Camera, in_view};
 use demo::scene::{Object, Scene};
+use demo::{load, split, town};
+use tools::Result;
 use tools::merging::landscape::{self, Landscape};
 use tools::rectangle::rectangle;
 
