@@ -158,6 +158,8 @@ fn field_of_view(text: &str) -> Result<f32, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::OsStr;
+
     use super::*;
     use crate::scene::Mesh;
 
@@ -178,7 +180,8 @@ mod tests {
     fn a_recording_needs_a_folder_that_exists() {
         let folder = tempfile::tempdir().unwrap();
         let record = |scene: &str, path: &Path| {
-            Args::parse_from(["demo".as_ref(), scene.as_ref(), "--record".as_ref(), path.as_os_str()]).check_record()
+            Args::parse_from([OsStr::new("demo"), OsStr::new(scene), OsStr::new("--record"), path.as_os_str()])
+                .check_record()
         };
         assert!(record("a.obj", &folder.path().join("frame.mocrec")).is_ok());
         assert!(record("a.obj", Path::new("frame.mocrec")).is_ok());

@@ -18,7 +18,7 @@ pub fn depth_picture(depth: &[f32], (from_w, from_h): (u32, u32), (width, height
     let mut known: Vec<f32> = depth.iter().copied().filter(|d| *d > 0.0).collect();
     let mut quantile = |q: f32| {
         let at = (known.len() as f32 * q) as usize;
-        if at < known.len() { known.select_nth_unstable_by(at, f32::total_cmp).1.ln() } else { 0.0 }
+        if at < known.len() { known.select_nth_unstable_by(at, f32::total_cmp).1.ln() } else { 1.0 }
     };
     let (far, near) = (quantile(0.002), quantile(0.99));
     let stops = [0x10121f, 0x3b2a63, 0x8c3a70, 0xdc6a55, 0xf9b66a, 0xfcf3c4]
