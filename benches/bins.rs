@@ -1,8 +1,6 @@
 //! A frame by way of triangle lists: bin all objects, then draw the bins, in one thread.
 
-mod common;
-
-use common::{HEIGHT, Order, WIDTH, views};
+use benches::{HEIGHT, Order, WIDTH, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use masked_occlusion_culling::{ScissorRect, TriList, UpdateRule, Vertices};
 
@@ -12,7 +10,7 @@ const FLOATS: usize = 9;
 fn bins(c: &mut Criterion) {
     let mut group = c.benchmark_group("bins");
     for view in views(Order::Near) {
-        let mut moc = common::object(UpdateRule::ThreeLayer);
+        let mut moc = benches::object(UpdateRule::ThreeLayer);
         moc.set_near_clip_plane(view.near).expect("a number");
         let (bin_w, bin_h) = moc.compute_bin_size(BINS.0, BINS.1).expect("bins are larger than tiles");
         let room = view.triangles() as usize * 2 * FLOATS;

@@ -1,8 +1,6 @@
 //! Random right triangles of one size a run, front to back and back to front: what a pixel costs.
 
-mod common;
-
-use common::{HEIGHT, RULES, WIDTH};
+use benches::{HEIGHT, RULES, WIDTH};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use masked_occlusion_culling::{BackfaceWinding, DrawOptions, Vertices};
@@ -38,7 +36,7 @@ fn fill(c: &mut Criterion) {
             }
             group.throughput(Throughput::Elements(indices.len() as u64 / 3));
             for (name, rule) in RULES {
-                let mut moc = common::object(rule);
+                let mut moc = benches::object(rule);
                 group.bench_function(BenchmarkId::new(name, size), |b| {
                     b.iter(|| {
                         moc.clear_buffer().expect("there is a buffer");

@@ -1,8 +1,6 @@
 //! A frame drawn by the pool of threads, beside the same frame drawn directly: clear, draw, flush.
 
-mod common;
-
-use common::{Order, views};
+use benches::{Order, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use masked_occlusion_culling::{CullingThreadpool, UpdateRule, Vertices};
 
@@ -15,7 +13,7 @@ fn pool(c: &mut Criterion) {
     for view in views(Order::Near) {
         let vertices = Vertices::from_positions(&view.positions);
         group.throughput(Throughput::Elements(view.triangles()));
-        let mut moc = common::object(UpdateRule::ThreeLayer);
+        let mut moc = benches::object(UpdateRule::ThreeLayer);
         moc.set_near_clip_plane(view.near).expect("a number");
         group.bench_function(BenchmarkId::new("direct", view.name), |b| {
             b.iter(|| {
@@ -27,7 +25,7 @@ fn pool(c: &mut Criterion) {
         });
         for &threads in &counts {
             let pool = CullingThreadpool::new(threads, 4, 4, 32).expect("threads can be started");
-            let mut moc = common::object(UpdateRule::ThreeLayer);
+            let mut moc = benches::object(UpdateRule::ThreeLayer);
             moc.set_near_clip_plane(view.near).expect("a number");
             pool.set_buffer(moc);
             pool.wake_threads();

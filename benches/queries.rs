@@ -1,8 +1,6 @@
 //! Queries: rectangles from small to the whole screen, hidden and visible, and hidden meshes.
 
-mod common;
-
-use common::{HEIGHT, Order, RULES, WIDTH, views};
+use benches::{HEIGHT, Order, RULES, WIDTH, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use masked_occlusion_culling::{CullingResult, Vertices};
@@ -25,8 +23,8 @@ fn rectangles(size: [u32; 2]) -> Vec<[f32; 4]> {
 fn test_rect(c: &mut Criterion) {
     let mut group = c.benchmark_group("test-rect");
     for (name, rule) in RULES {
-        let mut moc = common::object(rule);
-        common::draw_wall(&mut moc, 10.0);
+        let mut moc = benches::object(rule);
+        benches::draw_wall(&mut moc, 10.0);
         for size in [[4, 4], [16, 16], [64, 64], [256, 256], [1000, 1000], [WIDTH, HEIGHT]] {
             let rectangles = rectangles(size);
             group.throughput(Throughput::Elements(rectangles.len() as u64));
@@ -49,10 +47,10 @@ fn test_triangles(c: &mut Criterion) {
     for view in views(Order::Near) {
         group.throughput(Throughput::Elements(view.triangles()));
         for (name, rule) in RULES {
-            let mut moc = common::object(rule);
+            let mut moc = benches::object(rule);
             moc.set_near_clip_plane(view.near).expect("a number");
             // Right behind the near plane: everything is hidden, and every triangle is looked at.
-            common::draw_wall(&mut moc, view.near);
+            benches::draw_wall(&mut moc, view.near);
             let vertices = Vertices::from_positions(&view.positions);
             group.bench_function(BenchmarkId::new(view.name, name), |b| {
                 b.iter(|| {

@@ -1,8 +1,6 @@
 //! Whole frames: a clear and every object of a scene, by scene, order and rule; and by instruction set.
 
-mod common;
-
-use common::{ORDERS, Order, RULES, views};
+use benches::{ORDERS, Order, RULES, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
 
@@ -12,7 +10,7 @@ fn scenes(c: &mut Criterion) {
         for view in views(order) {
             group.throughput(Throughput::Elements(view.triangles()));
             for (rule_name, rule) in RULES {
-                let mut moc = common::object(rule);
+                let mut moc = benches::object(rule);
                 group.bench_function(BenchmarkId::new(format!("{}/{order_name}", view.name), rule_name), |b| {
                     b.iter(|| {
                         moc.clear_buffer().expect("there is a buffer");
@@ -30,7 +28,7 @@ fn instruction_sets(c: &mut Criterion) {
         group.throughput(Throughput::Elements(view.triangles()));
         for &implementation in Implementation::available() {
             let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
-            moc.set_resolution(common::WIDTH, common::HEIGHT).expect("the size is accepted");
+            moc.set_resolution(benches::WIDTH, benches::HEIGHT).expect("the size is accepted");
             group.bench_function(BenchmarkId::new(view.name, format!("{implementation:?}")), |b| {
                 b.iter(|| {
                     moc.clear_buffer().expect("there is a buffer");

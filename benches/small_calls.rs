@@ -1,8 +1,6 @@
 //! Boxes of twelve triangles, a call each: what a call costs before it draws anything.
 
-mod common;
-
-use common::RULES;
+use benches::RULES;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use glam::Mat4;
@@ -34,7 +32,7 @@ fn small_calls(c: &mut Criterion) {
     let mut group = c.benchmark_group("twelve-triangles");
     group.throughput(Throughput::Elements(BOXES as u64));
     for (name, rule) in RULES {
-        let mut moc = common::object(rule);
+        let mut moc = benches::object(rule);
         group.bench_function(BenchmarkId::new("clip-space", name), |b| {
             b.iter(|| {
                 moc.clear_buffer().expect("there is a buffer");
@@ -54,7 +52,7 @@ fn small_calls(c: &mut Criterion) {
         });
     }
     // Out of view: nothing but the front end.
-    let mut moc = common::object(UpdateRule::ThreeLayer);
+    let mut moc = benches::object(UpdateRule::ThreeLayer);
     let away: Vec<[[f32; 4]; 8]> = clip.iter().map(|b| b.map(|[x, y, z, w]| [x + 3.0 * w, y, z, w])).collect();
     group.bench_function("outside", |b| {
         b.iter(|| {

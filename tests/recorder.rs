@@ -334,7 +334,7 @@ fn a_file_that_cannot_be_read_or_is_none_says_so() {
         let path = folder.file("text");
         std::fs::write(&path, text).unwrap();
         let error = Recording::load(&path).expect_err("no recording");
-        assert_eq!(error.to_string(), "no whole recording: it does not begin with the signature, at byte 0");
+        assert_eq!(error.to_string(), "not a recording: it does not begin with a recording's signature");
     }
 }
 

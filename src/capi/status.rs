@@ -16,6 +16,17 @@ use crate::{CullingResult, Error};
 /// header's.
 pub const MOC_ABI_VERSION: u32 = 1;
 
+const _: () = {
+    const fn number(text: &str) -> u32 {
+        match u32::from_str_radix(text, 10) {
+            Ok(number) => number,
+            Err(_) => panic!("cargo gives numbers"),
+        }
+    }
+    let expected = 1000 * number(env!("CARGO_PKG_VERSION_MAJOR")) + number(env!("CARGO_PKG_VERSION_MINOR"));
+    assert!(MOC_ABI_VERSION == expected, "MOC_ABI_VERSION does not follow the crate's version");
+};
+
 /// What a call reports. Where it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the
 /// function says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

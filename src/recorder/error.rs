@@ -31,7 +31,8 @@ impl fmt::Display for RecordingError {
             Self::OutOfMemory => f.write_str("out of memory"),
             Self::Busy => f.write_str("a recording is under way already"),
             Self::File(error) => write!(f, "a recording cannot be made, written or read: {error}"),
-            Self::Invalid { offset, why } => write!(f, "no whole recording: {why}, at byte {offset}"),
+            Self::Invalid { offset: 0, why } => write!(f, "not a recording: {why}"),
+            Self::Invalid { offset, why } => write!(f, "a broken recording: {why}, at byte {offset}"),
         }
     }
 }

@@ -108,7 +108,7 @@ impl Recording {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, RecordingError> {
         let mut reader = Reader { bytes, at: 0 };
         if reader.word().ok() != Some(SIGNATURE) {
-            return Err(RecordingError::Invalid { offset: 0, why: "it does not begin with the signature" });
+            return Err(RecordingError::Invalid { offset: 0, why: "it does not begin with a recording's signature" });
         }
         let near_clip_plane = reader.float()?;
         reader.check(near_clip_plane.is_finite(), "the near plane is not a number")?;

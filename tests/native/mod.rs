@@ -12,9 +12,10 @@ pub use program::{Link, Program, build, run};
 #[allow(unused_imports)]
 pub use target::target;
 
-/// The folder of this package.
+/// The folder of the library: that of this package, or above it where the demo uses this module.
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.ancestors().find(|folder| folder.join("cpp-examples").is_dir()).unwrap_or(package)
 }
 
 /// The shared library that C programs link: on Windows, its import library.
@@ -38,14 +39,14 @@ fn library(link: Link) -> Result<PathBuf, String> {
     })
 }
 
-/// cargo builds every kind of library that Cargo.toml names before a test or an example, and leaves those for C
-/// beside the executable of a test, and in `../deps` of an example.
+/// cargo builds every kind of library that Cargo.toml names before a test or a program that depends on it, and leaves those for C
+/// beside the executable of a test, and in `deps` beside that of a program. What lies beside a program itself may be older.
 fn find(name: &str) -> Result<PathBuf, String> {
     let executable = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
     let folder = executable.parent().unwrap_or(Path::new("."));
     let places = match target().libraries() {
         Some(libraries) => vec![libraries.join(name)],
-        None => vec![folder.join(name), folder.join("../deps").join(name), folder.join("..").join(name)],
+        None => vec![folder.join("deps").join(name), folder.join(name), folder.join("..").join(name)],
     };
     places
         .iter()

@@ -22,13 +22,31 @@ pub fn target() -> &'static Target {
     TARGET.get_or_init(|| {
         let variable = |name| env::var(name).unwrap_or_else(|_| panic!("MOC_TEST_TARGET is set, and {name} is not"));
         match env::var("MOC_TEST_TARGET") {
-            Err(_) => Target { triple: env!("MOC_TARGET").into(), other: None },
+            Err(_) => Target { triple: own_triple(), other: None },
             Ok(triple) => {
                 let libraries = variable("MOC_TEST_LIBRARIES").into();
                 Target { triple, other: Some((libraries, variable("MOC_TEST_RUNNER"))) }
             }
         }
     })
+}
+
+/// The triple of this program, in as much detail as the choice of a C compiler needs.
+fn own_triple() -> String {
+    let arch = if cfg!(target_arch = "x86") { "i686" } else { env::consts::ARCH };
+    let suffix = match () {
+        () if cfg!(target_env = "gnu") => "-gnu",
+        () if cfg!(target_env = "musl") => "-musl",
+        () if cfg!(target_env = "msvc") => "-msvc",
+        () => "",
+    };
+    let abi = if cfg!(target_abi = "eabihf") { "eabihf" } else { "" };
+    let (vendor, os) = match env::consts::OS {
+        "windows" => ("pc", "windows"),
+        "macos" => ("apple", "darwin"),
+        os => ("unknown", os),
+    };
+    format!("{arch}-{vendor}-{os}{suffix}{abi}")
 }
 
 impl Target {
@@ -53,7 +71,7 @@ impl Target {
     pub fn compiler(&self, cpp: bool, out: &Path) -> cc::Build {
         let mut build = cc::Build::new();
         build.cpp(cpp).target(&self.triple).cargo_metadata(false).cargo_warnings(false).out_dir(out);
-        build.host(if self.other.is_some() { env!("MOC_HOST") } else { &self.triple });
+        build.host(&own_triple());
         build
     }
 

@@ -16,6 +16,8 @@ pub enum Place {
 pub struct Homogeneous {
     /// Value at pixel position (0, 0), change along x, change along y: of the three weights, then of their sum, 1/w.
     terms: [[f64; 3]; 4],
+    /// How much each changes over a pixel along its steepest direction.
+    slopes: [f64; 4],
     near: f64,
 }
 
@@ -41,7 +43,7 @@ impl Homogeneous {
             let term = terms[i];
             terms[3].iter_mut().zip(term).for_each(|(sum, t)| *sum += t);
         }
-        Some(Self { terms, near })
+        Some(Self { terms, slopes: terms.map(|[_, dx, dy]| dx.hypot(dy)), near })
     }
 
     fn value(&self, term: usize, x: f64, y: f64) -> f64 {
@@ -64,7 +66,6 @@ impl Homogeneous {
         let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
         let mut place = Place::Inside;
         for term in 0..4 {
-            let [_, dx, dy] = self.terms[term];
             let mut value = self.value(term, x, y);
             if term == 3 {
                 if self.near <= 0.0 {
@@ -72,7 +73,7 @@ impl Homogeneous {
                 }
                 value = 1.0 / self.near - value;
             }
-            let margin = tolerance * dx.hypot(dy);
+            let margin = tolerance * self.slopes[term];
             if value < -margin {
                 return Place::Outside;
             }

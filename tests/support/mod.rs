@@ -136,7 +136,8 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
         if let Some(column) = line[span.end..].iter().position(|d| !is_empty(*d)) {
             return Err(format!("covers ({}, {row}) falsely", span.end + column));
         }
-        let mut bound = (usize::MAX, 0.0);
+        // What holds for a whole block, which is most of the work: its number, the nearest and the farthest that is right.
+        let mut block = (usize::MAX, 0.0, 0.0);
         for column in span {
             let stored = f64::from(line[column]);
             if is_empty(line[column]) {
@@ -146,13 +147,13 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
             if stored.is_nan() || stored > exact * (1.0 + 1e-15) {
                 return Err(format!("({column}, {row}) is too near: {stored:e}, exactly {exact:e}"));
             }
-            if bound.0 != column / 8 {
-                bound = (column / 8, block_bound(t, column, row));
+            if block.0 != column / 8 {
+                block = (column / 8, block_bound(t, column, row), useful_depth(t, column, row));
             }
-            if stored > bound.1 {
-                return Err(format!("({column}, {row}) is too near for its block: {stored:e}, at most {:e}", bound.1));
+            let (_, bound, useful) = block;
+            if stored > bound {
+                return Err(format!("({column}, {row}) is too near for its block: {stored:e}, at most {bound:e}"));
             }
-            let useful = useful_depth(t, column, row);
             if stored < useful {
                 return Err(format!("({column}, {row}) is uselessly far: {stored:e}, not even {useful:e}"));
             }

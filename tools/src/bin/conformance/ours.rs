@@ -1,0 +1,55 @@
+//! The library's side: each triangle alone in a clear buffer, and what it covers as one bit for each pixel.
+
+use masked_occlusion_culling::{
+    BackfaceWinding, DrawOptions, Error, MaskedOcclusionCulling, Settings, Vertices, YAxis,
+};
+
+use crate::driver::{BATCH, WORDS};
+use crate::view::View;
+use tools::oracle::Triangle;
+
+pub struct Ours {
+    moc: MaskedOcclusionCulling,
+    view: View,
+    depth: Vec<f32>,
+    /// The coverage of a batch: for each 32 triangles a plane of the screen, in it for each pixel a bit a triangle.
+    planes: Vec<u32>,
+}
+
+impl Ours {
+    pub fn new(view: View, axis: YAxis) -> Result<Self, Error> {
+        let mut moc = MaskedOcclusionCulling::new(Settings { y_axis: axis, ..Settings::default() });
+        moc.set_resolution(view.width as u32, view.height as u32)?;
+        Ok(Self { moc, view, depth: vec![0.0; view.pixels()], planes: vec![0; WORDS * view.pixels()] })
+    }
+
+    /// Draws a batch, and says of each triangle how many pixels it covers.
+    pub fn draw(&mut self, triangles: &[Triangle]) -> Result<Vec<u64>, Error> {
+        assert!(triangles.len() <= BATCH);
+        self.planes.fill(0);
+        triangles.iter().enumerate().map(|(i, t)| self.draw_one(i, t)).collect()
+    }
+
+    fn draw_one(&mut self, number: usize, t: &Triangle) -> Result<u64, Error> {
+        let axis = self.moc.y_axis();
+        let vertices = t.map(|v| self.view.our_vertex(&v, axis));
+        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+        self.moc.clear_buffer()?;
+        self.moc.render_triangles(Vertices::from_clip_space(&vertices), &[0, 1, 2], &options)?;
+        self.moc.compute_pixel_depth_buffer(&mut self.depth, false)?;
+        let pixels = self.view.pixels();
+        let mut covered = 0;
+        let plane = &mut self.planes[number / 32 * pixels..][..pixels];
+        for (bits, depth) in plane.iter_mut().zip(&self.depth) {
+            let here = u32::from(*depth > 0.0);
+            *bits |= here << (number % 32);
+            covered += here;
+        }
+        Ok(u64::from(covered))
+    }
+
+    /// The bits of a pixel in one of the planes.
+    pub fn planes(&self) -> impl Iterator<Item = &[u32]> {
+        self.planes.chunks_exact(self.view.pixels())
+    }
+}

@@ -1,0 +1,41 @@
+//! Draws one of the benches' scenes some times over and does nothing else: for profilers and for counting instructions
+//! (`.ci/instructions`).
+
+use benches::{HEIGHT, ORDERS, WIDTH, views};
+use clap::Parser;
+use demo::options::{Isa, Rule, isa};
+use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
+
+#[derive(Parser)]
+struct Args {
+    /// town, terrain or blocks.
+    scene: String,
+    /// How often it is drawn, each time into a cleared buffer of 1920x1080.
+    #[arg(default_value_t = 1)]
+    frames: u32,
+    /// The highest instruction set; the best of the machine otherwise.
+    #[arg(long, value_name = "ISA", value_parser = isa)]
+    isa: Option<Isa>,
+    /// How the buffer takes in triangles.
+    #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
+    rule: Rule,
+    /// near or random.
+    #[arg(long, default_value = "near")]
+    order: String,
+}
+
+fn main() -> Result<(), String> {
+    let args = Args::parse();
+    let (_, order) = ORDERS.into_iter().find(|o| o.0 == args.order).ok_or("no such order")?;
+    let view = views(order).into_iter().find(|v| v.name == args.scene).ok_or("no such scene")?;
+    let (implementation, update_rule) =
+        (args.isa.map_or(Implementation::Avx512, Implementation::from), args.rule.into());
+    let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, ..Settings::default() });
+    moc.set_resolution(WIDTH, HEIGHT).map_err(|e| e.to_string())?;
+    for _ in 0..args.frames {
+        moc.clear_buffer().map_err(|e| e.to_string())?;
+        view.draw(&mut moc);
+    }
+    println!("{} triangles a frame, {:?}", view.triangles(), moc.implementation());
+    Ok(())
+}

@@ -1,0 +1,185 @@
+//! Draws frames of a view by one setting, and asks for what is tested.
+
+use std::time::Instant;
+
+use masked_occlusion_culling::{
+    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings,
+    VertexLayout, Vertices,
+};
+
+use crate::setting::{Order, Setting};
+use crate::subject::{Rectangle, Subject, View};
+use demo::camera::in_view;
+use demo::scene::Object;
+use tools::Result;
+
+/// An occluder as the library reads it fastest: x, y, z and nothing, 16 bytes a vertex.
+pub struct Occluder {
+    vertices: Vec<[f32; 4]>,
+    pub indices: Vec<u32>,
+    options: DrawOptions,
+    /// The least w of its box, and the greatest.
+    nearest: f32,
+    farthest: f32,
+}
+
+/// Of [`Occluder::vertices`].
+pub const LAYOUT: VertexLayout = VertexLayout::new(16, 4, 8);
+
+impl Occluder {
+    fn new(object: &Object, view: &View) -> Self {
+        let winding = if object.two_sided { BackfaceWinding::None } else { BackfaceWinding::Clockwise };
+        let w = demo::camera::box_corners(object.lo, object.hi).map(|p| (view.clip * p.extend(1.0)).w);
+        Self {
+            vertices: object.mesh.positions.iter().map(|p| p.extend(1.0).to_array()).collect(),
+            indices: object.mesh.triangles.as_flattened().to_vec(),
+            options: DrawOptions { winding, ..DrawOptions::with_matrix(view.clip) },
+            nearest: w.into_iter().fold(f32::INFINITY, f32::min).max(view.near),
+            farthest: w.into_iter().fold(view.near, f32::max),
+        }
+    }
+
+    pub fn vertices(&self) -> &[[f32; 4]] {
+        &self.vertices
+    }
+
+    pub fn winding(&self) -> BackfaceWinding {
+        self.options.winding
+    }
+
+    fn source(&self) -> Result<Vertices<'_>, Error> {
+        Vertices::new(self.vertices.as_flattened(), LAYOUT)
+    }
+
+    pub fn draw(&self, moc: &mut MaskedOcclusionCulling) -> Result<(), Error> {
+        moc.render_triangles(self.source()?, &self.indices, &self.options).map(drop)
+    }
+}
+
+/// The occluders in view, in the order of drawing.
+pub fn occluders(subject: &Subject, view: &View, order: Order) -> Vec<Occluder> {
+    let in_view = |o: &&Object| o.occluder && in_view(o.lo, o.hi, &view.clip);
+    let mut all: Vec<Occluder> = subject.objects.iter().filter(in_view).map(|o| Occluder::new(o, view)).collect();
+    match order {
+        Order::Near => all.sort_by(|a, b| a.nearest.total_cmp(&b.nearest)),
+        Order::Far => all.sort_by(|a, b| b.nearest.total_cmp(&a.nearest)),
+        Order::Random => fastrand::Rng::with_seed(3).shuffle(&mut all),
+    }
+    all
+}
+
+/// Deals occluders to buffers, in their order. What reaches over a wide range of depth cannot be sorted among what stands
+/// in it, so that the article on merging has a buffer of its own for terrain: the first buffer gets those that reach over
+/// the least, the last those that reach over the most, the same number of triangles each.
+fn deal(occluders: &[Occluder], buffers: usize) -> Vec<Vec<&Occluder>> {
+    let reach = |o: &Occluder| o.farthest / o.nearest;
+    let mut by_reach: Vec<usize> = (0..occluders.len()).collect();
+    by_reach.sort_by(|&a, &b| reach(&occluders[a]).total_cmp(&reach(&occluders[b])));
+    let total: usize = occluders.iter().map(|o| o.indices.len()).sum();
+    let (mut buffer_of, mut sum) = (vec![0; occluders.len()], 0);
+    for i in by_reach {
+        buffer_of[i] = (sum * buffers / total.max(1)).min(buffers - 1);
+        sum += occluders[i].indices.len();
+    }
+    let of = |buffer| occluders.iter().zip(&buffer_of).filter(move |(_, b)| **b == buffer).map(|(o, _)| o);
+    (0..buffers).map(|buffer| of(buffer).collect()).collect()
+}
+
+/// What draws frames by a setting.
+pub struct Frames<'a> {
+    lists: Vec<Vec<&'a Occluder>>,
+    buffers: Vec<MaskedOcclusionCulling>,
+    /// Where one buffer is drawn by several threads.
+    pool: Option<CullingThreadpool>,
+    threads: usize,
+}
+
+impl<'a> Frames<'a> {
+    pub fn new(setting: &Setting, occluders: &'a [Occluder], near: f32) -> Result<Self> {
+        let settings =
+            Settings { implementation: setting.isa.into(), update_rule: setting.rule.into(), ..Settings::default() };
+        let buffer = |_| -> Result<_> {
+            let mut moc = MaskedOcclusionCulling::new(settings);
+            moc.set_near_clip_plane(near)?;
+            moc.set_resolution(setting.size.0, setting.size.1)?;
+            Ok(moc)
+        };
+        let pool = (setting.threads > 1 && setting.buffers == 1).then(|| -> Result<_> {
+            // Who flushes draws, too.
+            let pool = CullingThreadpool::new(setting.threads - 1, 4, 16, 64)?;
+            pool.wake_threads();
+            Ok(pool)
+        });
+        Ok(Self {
+            lists: deal(occluders, setting.buffers),
+            buffers: (0..setting.buffers).map(buffer).collect::<Result<_>>()?,
+            pool: pool.transpose()?,
+            threads: setting.threads as usize,
+        })
+    }
+
+    /// Clears, draws, merges; the seconds that took.
+    pub fn draw(&mut self) -> Result<f64> {
+        if let Some(pool) = &self.pool {
+            pool.set_buffer(self.buffers.pop().ok_or("the pool still has the buffer")?);
+            let start = Instant::now();
+            pool.clear_buffer()?;
+            pool.scope(|scope| {
+                let mut list = self.lists[0].iter();
+                list.try_for_each(|o| scope.render_triangles(o.source()?, &o.indices, &o.options))
+            })?;
+            let seconds = start.elapsed().as_secs_f64();
+            self.buffers.extend(pool.take_buffer());
+            return Ok(seconds);
+        }
+        let start = Instant::now();
+        let mut jobs: Vec<_> = self.buffers.iter_mut().zip(&self.lists).collect();
+        if self.threads == 1 {
+            jobs.into_iter().try_for_each(|(moc, list)| draw_list(moc, list))?;
+        } else {
+            std::thread::scope(|scope| {
+                let share = jobs.len().div_ceil(self.threads);
+                let threads: Vec<_> = jobs
+                    .chunks_mut(share)
+                    .map(|jobs| scope.spawn(|| jobs.iter_mut().try_for_each(|(moc, list)| draw_list(moc, list))))
+                    .collect();
+                threads.into_iter().try_for_each(|t| t.join().expect("drawing does not panic"))
+            })?;
+        }
+        if let Some((first, others)) = self.buffers.split_first_mut()
+            && !others.is_empty()
+        {
+            first.merge_buffers(&others.iter().collect::<Vec<_>>())?;
+        }
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// Asks for every rectangle: which are hidden, and the seconds that took. Those without a rectangle may be seen.
+    pub fn test(&self, rectangles: &[Rectangle], hidden: &mut Vec<bool>) -> Result<f64> {
+        let moc = self.result();
+        hidden.clear();
+        let start = Instant::now();
+        for rectangle in rectangles {
+            hidden.push(match rectangle {
+                Some(rectangle) => is_hidden(moc, *rectangle)?,
+                None => false,
+            });
+        }
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// The buffer with all of it.
+    pub fn result(&self) -> &MaskedOcclusionCulling {
+        &self.buffers[0]
+    }
+}
+
+fn draw_list(moc: &mut MaskedOcclusionCulling, list: &[&Occluder]) -> Result<(), Error> {
+    moc.clear_buffer()?;
+    list.iter().try_for_each(|o| o.draw(moc))
+}
+
+/// Is a rectangle at w hidden, and not only out of view?
+pub fn is_hidden(moc: &MaskedOcclusionCulling, [x_min, y_min, x_max, y_max, w]: [f32; 5]) -> Result<bool, Error> {
+    Ok(moc.test_rect(x_min, y_min, x_max, y_max, w)? == CullingResult::Occluded)
+}

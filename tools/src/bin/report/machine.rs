@@ -1,0 +1,23 @@
+//! What a page of figures has to say of where and when they were taken.
+
+use std::time::SystemTime;
+
+use demo::options::Isa;
+
+/// The processor as the system names it, how many of it there are, and its instruction sets.
+pub fn machine() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find_map(|l| l.strip_prefix("model name")).and_then(|l| l.split_once(':'));
+    let model = model.map_or("processor unknown", |(_, name)| name.trim());
+    let count = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let isas: Vec<String> = Isa::available().into_iter().map(Isa::name).collect();
+    let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
+    format!("{model}, {count} processors, {os} on {arch}; {}", isas.join(", "))
+}
+
+/// The day, as in 2026-11-23 (UTC).
+pub fn day() -> String {
+    let mut time = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    time.truncate("2026-11-23".len());
+    time
+}

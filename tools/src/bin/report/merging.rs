@@ -1,0 +1,45 @@
+//! What a merge costs beside drawing: table 1 of the article of 2018, for the generated landscape.
+
+use crate::setting::RULES;
+use demo::options::Rule;
+use tools::Result;
+use tools::merging::landscape::Landscape;
+use tools::merging::measure::{Measured, measure};
+use tools::merging::truth::Truth;
+
+/// Those of the article.
+const SIZES: [(u32, u32); 3] = [(640, 400), (1280, 800), (1920, 1080)];
+const BOXES: u32 = 8_000;
+
+pub struct Row {
+    pub size: (u32, u32),
+    pub rule: Rule,
+    /// Boxes that are hidden.
+    pub hidden: usize,
+    pub measured: Measured,
+}
+
+impl Row {
+    /// The time of the merge as a part of that of drawing both buffers, in percent.
+    pub fn share(&self) -> f64 {
+        100.0 * self.measured.merge / (self.measured.terrain + self.measured.foreground)
+    }
+}
+
+pub const fn rows() -> usize {
+    SIZES.len() * RULES.len()
+}
+
+pub fn study(repeats: u32, mut tick: impl FnMut()) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for size in SIZES {
+        let landscape = Landscape::generate(size.0 as f32 / size.1 as f32, BOXES);
+        let truth = Truth::new(&landscape, size.0, size.1);
+        for rule in RULES {
+            let measured = measure(&landscape, &truth, size, rule.into(), repeats)?;
+            rows.push(Row { size, rule, hidden: truth.hidden, measured });
+            tick();
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,195 @@
+//! The passes of a frame: table 1 of the HPG 2016 paper, a full-resolution hierarchical z-buffer beside the masked buffer.
+//!
+//! The library draws in one go, without lists in memory between the passes. To have its passes apart, vertices are transformed
+//! by `transform_vertices` (Geom), culled and projected into a list by `bin_triangles` with a single bin (Proj), and drawn from it
+//! (Rast); the last column has the frame as an engine draws it, in one go.
+
+use std::time::Instant;
+
+use masked_occlusion_culling::{DrawOptions, MaskedOcclusionCulling, Settings, TriList, Vertices, transform_vertices};
+
+use crate::baseline;
+use crate::frame::{LAYOUT, Occluder, occluders};
+use crate::hiz::Hiz;
+use crate::setting::{Order, SCREEN};
+use crate::subject::{Rectangle, Subject, View};
+use crate::survey::median;
+use demo::options::Rule;
+use tools::Result;
+
+/// Clear, Geom, Proj, Rast, Gen, Test.
+pub const PASSES: [&str; 6] = ["clear", "geometry", "projection", "raster", "generate", "test"];
+
+pub struct Row {
+    pub name: String,
+    /// Seconds, medians.
+    pub passes: [f64; 6],
+    /// Drawn and tested in one go.
+    pub frame: f64,
+    /// Objects and boxes that are culled.
+    pub culled: usize,
+}
+
+impl Row {
+    pub fn total(&self) -> f64 {
+        self.passes.iter().sum()
+    }
+}
+
+/// Seconds since the last lap.
+struct Laps(Instant);
+
+impl Laps {
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        now.duration_since(std::mem::replace(&mut self.0, now)).as_secs_f64()
+    }
+}
+
+/// Each way in turn, again and again, on the first view of a scene, the nearest first.
+pub fn study(subject: &Subject, repeats: u32) -> Result<Vec<Row>> {
+    let view = &subject.views[0];
+    let occluders = occluders(subject, view, Order::Near);
+    let tested: Vec<Rectangle> = subject.rectangles(view).into_iter().chain(subject.boxes(view)).collect();
+    let mut ways = [
+        Way::new("z-buffer of all pixels (HiZ)", Kind::Hiz(Box::new(Hiz::new(SCREEN.0, SCREEN.1))), &occluders),
+        Way::new("masked, three layers", masked(Rule::ThreeLayer, view)?, &occluders),
+        Way::new("masked, quick", masked(Rule::Quick, view)?, &occluders),
+    ];
+    for turn in 0..=repeats {
+        for way in &mut ways {
+            let (passes, culled) = way.in_passes(&occluders, &tested, view)?;
+            let frame = way.in_one_go(&occluders, &tested, view)?;
+            if turn > 0 {
+                way.times.iter_mut().zip(passes.into_iter().chain([frame])).for_each(|(times, t)| times.push(t));
+            }
+            way.culled = culled;
+        }
+    }
+    Ok(ways.into_iter().map(Way::row).collect())
+}
+
+fn masked(rule: Rule, view: &View) -> Result<Kind> {
+    let mut moc = MaskedOcclusionCulling::new(Settings { update_rule: rule.into(), ..Settings::default() });
+    moc.set_near_clip_plane(view.near)?;
+    moc.set_resolution(SCREEN.0, SCREEN.1)?;
+    Ok(Kind::Masked(Box::new(moc)))
+}
+
+enum Kind {
+    Hiz(Box<Hiz>),
+    Masked(Box<MaskedOcclusionCulling>),
+}
+
+struct Way {
+    name: &'static str,
+    kind: Kind,
+    /// Clip space of every occluder, and the list's memory.
+    clip: Vec<Vec<[f32; 4]>>,
+    list: Vec<f32>,
+    times: [Vec<f64>; 7],
+    culled: usize,
+}
+
+impl Way {
+    fn new(name: &'static str, kind: Kind, occluders: &[Occluder]) -> Self {
+        let triangles: usize = occluders.iter().map(|o| o.indices.len() / 3).sum();
+        Self {
+            name,
+            kind,
+            clip: occluders.iter().map(|o| vec![[0.0; 4]; o.vertices().len()]).collect(),
+            // A triangle that is clipped becomes several.
+            list: vec![0.0; 9 * 2 * (triangles + 1000)],
+            times: [const { Vec::new() }; 7],
+            culled: 0,
+        }
+    }
+
+    /// The time of each pass, and how many are culled.
+    fn in_passes(&mut self, occluders: &[Occluder], tested: &[Rectangle], view: &View) -> Result<([f64; 6], usize)> {
+        let mut t = [0.0; 6];
+        let mut laps = Laps(Instant::now());
+        match &mut self.kind {
+            Kind::Hiz(hiz) => {
+                hiz.set_near(view.near);
+                laps.lap();
+                hiz.clear();
+                t[0] = laps.lap();
+                for o in occluders {
+                    hiz.winding = o.winding();
+                    laps.lap();
+                    hiz.transform(o.vertices(), &view.clip);
+                    t[1] += laps.lap();
+                    hiz.project(&o.indices);
+                    t[2] += laps.lap();
+                }
+                laps.lap();
+                hiz.raster();
+                t[3] = laps.lap();
+                hiz.generate();
+                t[4] = laps.lap();
+            }
+            Kind::Masked(moc) => {
+                moc.clear_buffer()?;
+                t[0] = laps.lap();
+                let mut lists = [TriList::new(&mut self.list)];
+                for (o, clip) in occluders.iter().zip(&mut self.clip) {
+                    let source = Vertices::new(o.vertices().as_flattened(), LAYOUT)?;
+                    laps.lap();
+                    transform_vertices(&view.clip, source, clip);
+                    t[1] += laps.lap();
+                    let options = DrawOptions { winding: o.winding(), ..DrawOptions::default() };
+                    moc.bin_triangles(Vertices::from_clip_space(clip), &o.indices, &mut lists, 1, 1, &options)?;
+                    t[2] += laps.lap();
+                }
+                laps.lap();
+                moc.render_trilist(&lists[0], None)?;
+                t[3] = laps.lap();
+            }
+        }
+        laps.lap();
+        let culled = self.test(tested)?;
+        t[5] = laps.lap();
+        Ok((t, culled))
+    }
+
+    /// The time of the frame as an engine draws it.
+    fn in_one_go(&mut self, occluders: &[Occluder], tested: &[Rectangle], view: &View) -> Result<f64> {
+        let start = Instant::now();
+        match &mut self.kind {
+            Kind::Hiz(hiz) => {
+                hiz.clear();
+                baseline::draw(hiz, occluders, view);
+                hiz.generate();
+            }
+            Kind::Masked(moc) => {
+                moc.clear_buffer()?;
+                occluders.iter().try_for_each(|o| o.draw(moc))?;
+            }
+        }
+        self.test(tested)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    fn test(&self, tested: &[Rectangle]) -> Result<usize> {
+        let mut culled = 0;
+        for &[x_min, y_min, x_max, y_max, w] in tested.iter().flatten() {
+            culled += usize::from(match &self.kind {
+                Kind::Hiz(hiz) => hiz.test_rect(x_min, y_min, x_max, y_max, w),
+                Kind::Masked(moc) => crate::frame::is_hidden(moc, [x_min, y_min, x_max, y_max, w])?,
+            });
+        }
+        Ok(culled)
+    }
+
+    fn row(mut self) -> Row {
+        let medians = self.times.each_mut().map(|times| median(times));
+        let [clear, geometry, projection, raster, generate, test, frame] = medians;
+        Row {
+            name: self.name.into(),
+            passes: [clear, geometry, projection, raster, generate, test],
+            frame,
+            culled: self.culled,
+        }
+    }
+}

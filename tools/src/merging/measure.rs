@@ -1,0 +1,121 @@
+//! Draws a landscape both ways, in turn, and takes the times.
+
+use std::time::{Duration, Instant};
+
+use masked_occlusion_culling::{
+    CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
+};
+
+use super::landscape::{Landscape, NEAR};
+use super::truth::Truth;
+use demo::scene::Object;
+
+/// Times are medians, in seconds.
+pub struct Measured {
+    /// All into one buffer.
+    pub one: f64,
+    /// Each part, as its thread took it.
+    pub terrain: f64,
+    pub foreground: f64,
+    /// Both parts, from the start of the threads to the end of the slower one.
+    pub both: f64,
+    pub merge: f64,
+    /// How many of the hidden boxes are culled by the one buffer, and by the merged one.
+    pub culled_one: usize,
+    pub culled_two: usize,
+    /// How many boxes are culled, by either, that are not hidden.
+    pub falsely: usize,
+}
+
+/// An object as the library takes it.
+struct Drawn {
+    positions: Vec<[f32; 3]>,
+    triangles: Vec<u32>,
+}
+
+impl Drawn {
+    fn all(objects: &[Object]) -> Vec<Self> {
+        let drawn = |o: &Object| Self {
+            positions: o.mesh.positions.iter().map(|p| p.to_array()).collect(),
+            triangles: o.mesh.triangles.as_flattened().to_vec(),
+        };
+        objects.iter().map(drawn).collect()
+    }
+}
+
+pub fn measure(
+    landscape: &Landscape,
+    truth: &Truth,
+    (width, height): (u32, u32),
+    update_rule: UpdateRule,
+    repeats: u32,
+) -> Result<Measured, Error> {
+    let buffer = || -> Result<_, Error> {
+        let mut moc = MaskedOcclusionCulling::new(Settings { update_rule, ..Settings::default() });
+        moc.set_near_clip_plane(NEAR)?;
+        moc.set_resolution(width, height)?;
+        Ok(moc)
+    };
+    let (mut one, mut merged, mut other) = (buffer()?, buffer()?, buffer()?);
+    let (terrain, foreground) = (Drawn::all(&landscape.terrain), Drawn::all(&landscape.foreground));
+    let pick = |&(is_terrain, i): &(bool, usize)| if is_terrain { &terrain[i] } else { &foreground[i] };
+    let interleaved: Vec<&Drawn> = landscape.interleaved.iter().map(pick).collect();
+    let options = DrawOptions::with_matrix(landscape.clip_from_world);
+    let options = &options;
+
+    let mut times = [const { Vec::new() }; 5];
+    // The first turn touches memory that the system has not given yet: it is not counted.
+    for turn in 0..=repeats {
+        let all = draw(&mut one, interleaved.iter().copied(), options)?;
+
+        let start = Instant::now();
+        let (far, near) = std::thread::scope(|scope| {
+            let far = scope.spawn(|| draw(&mut other, terrain.iter(), options));
+            let near = scope.spawn(|| draw(&mut merged, foreground.iter(), options));
+            (far.join().expect("drawing does not panic"), near.join().expect("drawing does not panic"))
+        });
+        let both = start.elapsed();
+        let start = Instant::now();
+        merged.merge_buffer(&other)?;
+        let merge = start.elapsed();
+
+        if turn > 0 {
+            for (times, time) in times.iter_mut().zip([all, far?, near?, both, merge]) {
+                times.push(time);
+            }
+        }
+    }
+
+    let (mut culled, mut falsely) = ([0; 2], 0);
+    for (i, &[x_min, y_min, x_max, y_max, w]) in landscape.boxes.iter().enumerate() {
+        let mut by_either = false;
+        for (moc, culled) in [&one, &merged].into_iter().zip(&mut culled) {
+            let is_culled = moc.test_rect(x_min, y_min, x_max, y_max, w)? == CullingResult::Occluded;
+            *culled += usize::from(is_culled && truth.is_hidden[i]);
+            by_either |= is_culled;
+        }
+        falsely += usize::from(by_either && !truth.may_be_hidden[i]);
+    }
+    let [one, terrain, foreground, both, merge] = times.map(median);
+    Ok(Measured { one, terrain, foreground, both, merge, culled_one: culled[0], culled_two: culled[1], falsely })
+}
+
+/// Clears the buffer and draws objects; how long that took.
+fn draw<'d>(
+    moc: &mut MaskedOcclusionCulling,
+    objects: impl Iterator<Item = &'d Drawn>,
+    options: &DrawOptions,
+) -> Result<Duration, Error> {
+    let start = Instant::now();
+    moc.clear_buffer()?;
+    for object in objects {
+        moc.render_triangles(Vertices::from_positions(&object.positions), &object.triangles, options)?;
+    }
+    Ok(start.elapsed())
+}
+
+/// The middle one, or the higher one of the two in the middle; in seconds.
+fn median(mut times: Vec<Duration>) -> f64 {
+    times.sort();
+    times[times.len() / 2].as_secs_f64()
+}
