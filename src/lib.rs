@@ -14,17 +14,19 @@
 //!
 //! The way of a triangle is told in `src/pipeline/mod.rs`, the memory's layout in `src/buffer/mod.rs`, the vector
 //! layer in `src/simd/mod.rs`. The C interface is in [`capi`]; C and C++ include what is in `include/`.
-#![warn(missing_docs)]
+#![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod allocator;
 mod attachment;
 mod bins;
 mod buffer;
+#[cfg(feature = "capi")]
 pub mod capi;
 mod culling;
 mod error;
 mod float_environment;
+mod matrix;
 mod pipeline;
 mod pool;
 mod recorder;
@@ -36,22 +38,25 @@ mod transform;
 mod types;
 mod vertices;
 
-/// The matrices of [`DrawOptions`].
+/// The version of glam whose `Mat4` can be passed as a [`Matrix`].
+#[cfg(feature = "glam")]
 pub use glam;
 
 pub use allocator::Allocator;
 pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;
 pub use error::Error;
+pub use matrix::Matrix;
 pub use pool::{CullingThreadpool, Scope, ThreadStart, ThreadpoolSettings};
 pub use recorder::{RecordedCall, RecordedMesh, RecordedRect, Recording, RecordingError};
 pub use settings::{DrawOptions, Settings};
 pub use transform::transform_vertices;
+pub(crate) use types::VertexLayout;
 pub use types::{
     BackfaceWinding, ClipPlanes, CullingResult, Implementation, OccludeeStatistics, OccluderStatistics, ScissorRect,
-    Statistics, UpdateRule, VertexLayout, YAxis,
+    Statistics, UpdateRule, YAxis,
 };
-pub use vertices::Vertices;
+pub use vertices::{ClipSpaceLayout, ModelSpaceLayout, VertexSpace, Vertices};
 
 /// The README's program is tested.
 #[cfg(doctest)]

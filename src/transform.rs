@@ -1,23 +1,31 @@
 //! Vertices to clip space, for callers that want them there.
 
-use glam::Mat4;
-
-use crate::Vertices;
 use crate::simd::{self, Job, Simd};
-use crate::vertices::VertexSource;
-use crate::{Implementation, pipeline};
+use crate::vertices::{VertexSource, vertex_count};
+use crate::{Error, Implementation, Matrix, ModelSpaceLayout, pipeline};
 
-/// Transforms positions (x, y, z, 1) by `matrix` into packed clip-space x, y, z, w: as many as there are
-/// vertices or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
-pub fn transform_vertices(matrix: &Mat4, vertices: Vertices<'_>, out: &mut [[f32; 4]]) {
-    let count = vertices.len().min(out.len());
+/// Transforms the positions (x, y, z, 1) that lie in `data` as `layout` says by `matrix` into packed clip-space x, y, z, w: as many
+/// as there are positions or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
+///
+/// # Errors
+/// [`Error::InvalidLayout`] where the stride or an offset is negative: nothing is written.
+pub fn transform_vertices(
+    matrix: impl Into<Matrix>,
+    data: &[f32],
+    layout: ModelSpaceLayout,
+    out: &mut [[f32; 4]],
+) -> Result<(), Error> {
+    let layout = layout.into();
+    let count = vertex_count(size_of_val(data), layout)?.min(out.len());
+    let source = VertexSource { base: data.as_ptr().cast(), layout };
     // SAFETY: both slices have that many.
-    unsafe { transform_raw(matrix, vertices.source(), out.as_mut_ptr().cast(), count) }
+    unsafe { transform_raw(matrix.into().as_array(), source, out.as_mut_ptr().cast(), count) };
+    Ok(())
 }
 
 /// # Safety
 /// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
-pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
+pub(crate) unsafe fn transform_raw(matrix: &[f32; 16], source: VertexSource, out: *mut f32, count: usize) {
     let best = *Implementation::available().last().unwrap_or(&Implementation::Scalar);
     // In parts whose vertices have numbers of 32 bits, as those that a mesh names.
     const PART: usize = 1 << 30;
@@ -32,7 +40,7 @@ pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mu
 }
 
 struct Transform<'a> {
-    matrix: &'a Mat4,
+    matrix: &'a [f32; 16],
     source: VertexSource,
     out: *mut f32,
     count: usize,

@@ -35,7 +35,7 @@ pub(super) fn mesh<S: Simd, L: LastStep>(
     last: &mut L,
 ) -> (CullingResult, Tally) {
     let camera = &if L::PURPOSE == Purpose::Query { camera.for_queries() } else { *camera };
-    let reader = Reader::new(s, mesh.vertices, mesh.options.model_to_clip.as_ref());
+    let reader = Reader::new(s, mesh.vertices, mesh.matrix);
     let facing = Facing::new(mesh.options.winding, camera);
     let mut memory = Scratch::uninit();
     let scratch = Scratch::of(&mut memory);

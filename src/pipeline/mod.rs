@@ -42,7 +42,7 @@ use crate::buffer::{Buffer, TileRect};
 use crate::simd::{self, Job, Simd};
 use crate::statistics::Tally;
 use crate::vertices::VertexSource;
-use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation};
+use crate::{BackfaceWinding, CullingResult, DrawOptions, Implementation, Vertices};
 
 use kept::Keep;
 pub(crate) use kept::{Cuts, Kept};
@@ -53,7 +53,14 @@ pub(crate) use project::{Camera, transform};
 pub(crate) struct Mesh<'a> {
     pub vertices: VertexSource,
     pub triangles: &'a [u32],
+    pub matrix: Option<&'a [f32; 16]>,
     pub options: &'a DrawOptions,
+}
+
+impl<'a> Mesh<'a> {
+    pub fn new(vertices: &'a Vertices<'_>, triangles: &'a [u32], options: &'a DrawOptions) -> Self {
+        Self { vertices: vertices.source(), triangles, matrix: vertices.matrix(), options }
+    }
 }
 
 /// What a call has to know about a triangle's facing: which order of its corners runs clockwise in rows

@@ -8,8 +8,6 @@
 //! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the
 //! denormal numbers: the bits do not depend on whether the processor flushes those.
 
-use glam::Mat4;
-
 use super::scratch::Scratch;
 use crate::simd::Simd;
 use crate::vertices::VertexSource;
@@ -86,8 +84,7 @@ pub(super) struct Rows<S: Simd>([[S::F; 4]; 3]);
 
 impl<S: Simd> Rows<S> {
     #[inline(always)]
-    pub fn new(s: S, matrix: &Mat4) -> Self {
-        let m = matrix.to_cols_array();
+    pub fn new(s: S, m: &[f32; 16]) -> Self {
         let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
         Self([row(0), row(1), row(3)])
     }
@@ -169,7 +166,7 @@ impl Packing {
 
 impl<S: Simd> Reader<S> {
     #[inline(always)]
-    pub fn new(s: S, source: VertexSource, matrix: Option<&Mat4>) -> Self {
+    pub fn new(s: S, source: VertexSource, matrix: Option<&[f32; 16]>) -> Self {
         Self { s, source, packing: Packing::of(source.layout), rows: matrix.map(|m| Rows::new(s, m)) }
     }
 
@@ -360,8 +357,7 @@ impl<S: Simd> Reader<S> {
 /// # Safety
 /// The vertices can be read and `out` can be written for four floats each; either may be unaligned.
 #[inline(always)]
-pub(crate) unsafe fn transform<S: Simd>(s: S, matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
-    let m = matrix.to_cols_array();
+pub(crate) unsafe fn transform<S: Simd>(s: S, m: &[f32; 16], source: VertexSource, out: *mut f32, count: usize) {
     let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
     let rows = [row(0), row(1), row(2), row(3)];
     let reader = Reader { s, source, packing: Packing::of(source.layout), rows: None };

@@ -7,16 +7,17 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use super::grid::Grid;
 use crate::buffer::TileRect;
-use crate::pipeline::Kept;
+use crate::pipeline::{Kept, Mesh};
 use crate::simd::MAX_LANES;
 use crate::vertices::VertexSource;
-use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling};
+use crate::{CullingResult, DrawOptions, MaskedOcclusionCulling};
 
 /// A call, or a part of it, as it was submitted.
 pub(super) struct Call {
     pub vertices: VertexSource,
     pub triangles: *const u32,
     pub indices: usize,
+    pub matrix: Option<[f32; 16]>,
     pub options: DrawOptions,
     pub near: f32,
     /// Clears that were submitted before it; the crew counts.
@@ -144,11 +145,12 @@ impl Target {
         let sift = clears.is_some_and(|clears| self.is_cleared(clears));
         for call in calls {
             // SAFETY: the caller's contract.
-            let done = unsafe {
+            unsafe {
                 let triangles = core::slice::from_raw_parts(call.triangles, call.indices);
-                self.moc().keep(call.vertices, triangles, &call.options, call.near, (self.grid.cuts(), sift), kept)
-            };
-            debug_assert_eq!(done, Ok(()), "a target has a buffer");
+                let (vertices, matrix, options) = (call.vertices, call.matrix.as_ref(), &call.options);
+                let mesh = Mesh { vertices, triangles, matrix, options };
+                self.moc().keep(&mesh, call.near, (self.grid.cuts(), sift), kept);
+            }
         }
     }
 
@@ -173,14 +175,11 @@ impl Target {
                 // SAFETY: whoever has the bin's lock for writing is the only one who writes its tiles and areas; those who
                 // keep read least depths, as words, and direct queries of the object that began before the draw discard their
                 // answers.
-                let done = unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
-                debug_assert_eq!(done, Ok(()), "a target has a buffer");
+                unsafe { self.moc().draw_kept(kept, (clip, bin), &mut piece.drawn) };
             }
             Work::Clear(number) => {
-                if let Ok(buffer) = self.moc().buffer() {
-                    // SAFETY: as above.
-                    unsafe { buffer.clear_tiles(clip) };
-                }
+                // SAFETY: as above.
+                unsafe { self.moc().buffer().clear_tiles(clip) };
                 piece.drawn = 0;
                 // After the tiles, for those who look at them without the lock.
                 self.bins[bin].clears.store(*number, Ordering::Release);
@@ -192,19 +191,24 @@ impl Target {
     fn merge(&self, others: &[Shared], clip: TileRect) {
         // SAFETY: who submitted them vouches for them.
         let others: Vec<&MaskedOcclusionCulling> = others.iter().map(|other| unsafe { other.0.as_ref() }).collect();
-        if let (Ok(mine), Ok(theirs)) = (self.moc().buffer(), self.moc().mergeable(&others)) {
+        // They fitted when they were submitted, and nobody changes them meanwhile.
+        if let Ok(theirs) = self.moc().mergeable(&others) {
             // SAFETY: the bin's lock is held for writing; who submitted the others vouches for them.
-            unsafe { crate::buffer::merge::merge(self.moc().implementation(), mine, &theirs, clip) };
+            unsafe { crate::buffer::merge::merge(self.moc().implementation(), self.moc().buffer(), &theirs, clip) };
         }
     }
 
     /// Asks while nobody draws in the bins that hold a tile of a rectangle, or a least depth that lies in a vector with one of
     /// its tiles'. What was drawn before a clear that was submitted, but not done yet, hides nothing.
-    pub fn query(
-        &self,
-        tiles: TileRect,
-        ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
-    ) -> Result<CullingResult, Error> {
+    pub fn query(&self, tiles: TileRect, ask: impl FnOnce(&MaskedOcclusionCulling) -> CullingResult) -> CullingResult {
+        match self.look(tiles, ask) {
+            (CullingResult::Occluded, true) => CullingResult::Visible,
+            (result, _) => result,
+        }
+    }
+
+    /// The same for whatever `ask` returns. True: of what was drawn some is to be cleared yet.
+    pub fn look<R>(&self, tiles: TileRect, ask: impl FnOnce(&MaskedOcclusionCulling) -> R) -> (R, bool) {
         let clears = self.clears.load(Ordering::Acquire);
         let read = |bin: usize| self.bins[bin].piece.read().unwrap_or_else(PoisonError::into_inner);
         // Vectors go on with the next rows of tiles.
@@ -218,10 +222,7 @@ impl Target {
         let stale = self.grid.touched(tiles).any(|bin| self.bins[bin].clears.load(Ordering::Acquire) < clears);
         let result = ask(self.moc());
         drop((first, rest));
-        match result? {
-            CullingResult::Occluded if stale => Ok(CullingResult::Visible),
-            result => Ok(result),
-        }
+        (result, stale)
     }
 
     /// The same after its object got another resolution.
@@ -259,5 +260,5 @@ impl Drop for Target {
 
 /// All tiles of an object, or one where it has no buffer yet.
 fn tiles_of(moc: &MaskedOcclusionCulling) -> TileRect {
-    moc.buffer().map_or(TileRect { x0: 0, y0: 0, x1: 1, y1: 1 }, |buffer| buffer.all_tiles())
+    if moc.has_buffer() { moc.buffer().all_tiles() } else { TileRect { x0: 0, y0: 0, x1: 1, y1: 1 } }
 }

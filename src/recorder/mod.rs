@@ -182,10 +182,9 @@ impl MaskedOcclusionCulling {
     /// recorded; see [`Self::record_render_triangles`].
     ///
     /// # Errors
-    /// [`RecordingError::NoBuffer`]; [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
+    /// [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
     pub fn recorder_start(&self, path: impl AsRef<Path>) -> Result<(), RecordingError> {
-        let resolution = self.resolution().ok_or(RecordingError::NoBuffer)?;
-        self.recorder().start(path.as_ref(), (self.near_clip_plane(), resolution))
+        self.recorder().start(path.as_ref(), (self.near_clip_plane(), self.resolution()))
     }
 
     /// Ends the recording. Nothing happens where there is none; an object that is dropped ends its recording, too.
@@ -209,9 +208,8 @@ impl MaskedOcclusionCulling {
         result: Option<CullingResult>,
     ) -> Result<(), crate::Error> {
         self.check_mesh(&vertices, triangles)?;
-        let mesh = Mesh { vertices: vertices.source(), triangles, options };
         // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.recorder().render_triangles(result, &mesh) };
+        unsafe { self.recorder().render_triangles(result, &Mesh::new(&vertices, triangles, options)) };
         Ok(())
     }
 }

@@ -37,7 +37,7 @@ impl<W: Write> Writer<W> {
     /// # Safety
     /// Every vertex from the lowest to the highest index can be read.
     pub unsafe fn triangles(&mut self, kind: u8, result: Option<CullingResult>, mesh: &Mesh<'_>) -> io::Result<()> {
-        let &Mesh { vertices, triangles, options } = mesh;
+        let &Mesh { vertices, triangles, matrix, options } = mesh;
         let bounds = triangles.iter().min().copied().zip(triangles.iter().max().copied());
         let too_large =
             || io::Error::new(io::ErrorKind::InvalidInput, "more vertices or triangles than the format can count");
@@ -63,9 +63,9 @@ impl<W: Write> Writer<W> {
         for index in triangles {
             self.words(&[index - low])?;
         }
-        self.out.write_all(&[options.model_to_clip.is_some().into()])?;
-        if let Some(matrix) = options.model_to_clip {
-            self.words(&matrix.to_cols_array().map(f32::to_bits))?;
+        self.out.write_all(&[matrix.is_some().into()])?;
+        if let Some(matrix) = matrix {
+            self.words(&matrix.map(f32::to_bits))?;
         }
         self.int(options.clip_planes.bits() as i32)?;
         self.int(options.winding as i32)?;
