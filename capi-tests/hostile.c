@@ -26,8 +26,8 @@ static void null_pointers(void)
     const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER), *none = NULL;
     MOC_TriList list = {3, 1, NULL};
-    MOC_Settings settings;
-    MOC_Statistics stats;
+    MOC_Settings settings = {.size = sizeof settings};
+    MOC_Statistics stats = {.size = sizeof stats};
     int64_t dropped;
     MOC_AlignedAlloc alloc;
     MOC_AlignedFree release;
@@ -142,10 +142,9 @@ static void wrong_integers(void)
     list.data = storage;
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
     for (i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        for (k = 0; k < 4; k++) {
-            MOC_Settings settings;
-            int32_t *field[] = {&settings.implementation, &settings.update_rule, &settings.y_axis,
-                                &settings.precise_coverage};
+        for (k = 0; k < 3; k++) {
+            MOC_Settings settings = {.size = sizeof settings};
+            int32_t *field[] = {&settings.implementation, &settings.update_rule, &settings.y_axis};
             CHECK_EQ(MOC_DefaultSettings(&settings), MOC_STATUS_OK);
             *field[k] = wrong[i];
             none = moc;

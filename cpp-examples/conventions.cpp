@@ -354,7 +354,8 @@ int main() {
     Moc::Destroy(moc);
 
     // What USE_D3D 0 sets. Clip space and rectangles stay as they are; row 0 is the lowest.
-    MOC_Settings settings;
+    MOC_Settings settings = {};
+    settings.size = sizeof(settings);
     MOC_DefaultSettings(&settings);
     settings.y_axis = MOC_Y_AXIS_UP;
     if (MOC_Create(&settings, &moc) != MOC_STATUS_OK) return 1;

@@ -17,7 +17,7 @@ int main(void) {
         return 1;
     }
 
-    MOC_Settings settings;
+    MOC_Settings settings = {.size = sizeof settings};
     check(MOC_DefaultSettings(&settings), "settings");
     struct MaskedOcclusionCulling *moc = NULL;
     check(MOC_Create(&settings, &moc), "create");

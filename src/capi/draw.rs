@@ -183,8 +183,8 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
 
 /// MOC_RenderTriangles or MOC_RenderTrianglesChecked of a mesh that a struct describes.
 ///
-/// Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or an
-/// `index_count` that is not a multiple of 3, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+/// Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or a
+/// `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for the

@@ -26,25 +26,23 @@ pub struct MOC_Mesh {
     pub size: u32,
     /// Bytes of an index: 4, or 0, which means 4.
     pub index_size: u32,
-    /// The x of the first vertex, at any address. Null is allowed when there are no indices.
+    /// The x of the first vertex, at any address. Null is allowed when there are no triangles.
     pub vertices: *const f32,
-    /// The indices, `uint32_t`, three per triangle. Null is allowed when there are none.
+    /// The indices, `uint32_t`, three per triangle. Null is allowed when there are no triangles.
     pub indices: *const c_void,
     /// How many vertices there are: an index that is not below is refused. MOC_UNCHECKED: indices are trusted.
     pub vertex_count: u32,
-    /// How many indices: a multiple of 3.
-    pub index_count: u32,
-    /// Where the coordinates are. All zero: packed x, y, z with a matrix, packed x, y, z, w without one. With a matrix the last
+    /// How many triangles, 0 to INT32_MAX.
+    pub triangle_count: u32,
+    /// 16 floats, as in MOC_RenderTriangles. Null: the vertices are in clip space.
+    pub model_to_clip: *const f32,
+    /// Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. With a matrix the last
     /// offset names z, without one w. Offsets may be negative.
-    pub layout: MOC_VertexLayout,
+    pub layout: *const MOC_VertexLayout,
     /// A MOC_BackfaceWinding, of the triangle as it is seen on the screen. Zero is MOC_BACKFACE_NONE: both sides count.
     pub winding: i32,
     /// MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right; zero is MOC_CLIP_PLANE_NONE.
     pub clip_planes: i32,
-    /// 0.
-    pub reserved: u32,
-    /// 16 floats, as in MOC_RenderTriangles. Null: the vertices are in clip space.
-    pub model_to_clip: *const f32,
 }
 
 /// What a caller says of a mesh.
@@ -141,14 +139,16 @@ impl Describe for *const MOC_Mesh {
         const NAMES: Names = Names {
             no_triangles: "indices is null",
             misaligned: "indices is not aligned to 4 bytes",
-            too_many: "index_count is larger than memory can hold",
+            too_many: "triangle_count is larger than memory can hold",
             out_of_range: "an index is not below vertex_count",
         };
         const NULL: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the mesh is null");
         const SIZE: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_Mesh)");
-        const WHOLE: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "index_count is not a multiple of 3");
+        const COUNT: Refusal = Refusal::new(
+            MOC_Status::MOC_STATUS_INVALID_SIZE,
+            "triangle_count is above 2147483647, or larger than memory can hold",
+        );
         const INDEX: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "index_size is neither 4 nor 0");
-        const RESERVED: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "reserved is not 0");
         // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
         if unsafe { read_size(*self) }.ok_or(NULL)? < size_of::<MOC_Mesh>() {
             return Err(SIZE);
@@ -158,14 +158,8 @@ impl Describe for *const MOC_Mesh {
         if !matches!(mesh.index_size, 0 | 4) {
             return Err(INDEX);
         }
-        if mesh.reserved != 0 {
-            return Err(RESERVED);
-        }
-        if !mesh.index_count.is_multiple_of(3) {
-            return Err(WHOLE);
-        }
+        let count = usize::try_from(mesh.triangle_count as i32).map_err(|_| COUNT)?;
         let packed = if mesh.model_to_clip.is_null() { VertexLayout::CLIP_SPACE } else { VertexLayout::POSITIONS };
-        let layout = VertexLayout::from(mesh.layout);
         Ok(Description {
             vertices: mesh.vertices,
             extent: match mesh.vertex_count {
@@ -173,11 +167,12 @@ impl Describe for *const MOC_Mesh {
                 count => Extent::Vertices(count as usize),
             },
             triangles: mesh.indices.cast(),
-            indices: mesh.index_count as usize,
+            indices: count.checked_mul(3).ok_or(COUNT)?,
             model_to_clip: mesh.model_to_clip,
             winding: mesh.winding,
             clip_planes: mesh.clip_planes,
-            layout: if layout == VertexLayout::new(0, 0, 0) { packed } else { layout },
+            // SAFETY: the caller's contract.
+            layout: unsafe { read(mesh.layout) }.map_or(packed, VertexLayout::from),
             names: &NAMES,
         })
     }

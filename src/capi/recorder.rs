@@ -8,7 +8,7 @@ use super::pointers::{check_out, object, read_size, slice, with_buffer, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
-use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording, VertexLayout};
+use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
 /// No answer is known, in recordings.
 pub const MOC_RESULT_UNKNOWN: i32 = -1;
@@ -34,7 +34,9 @@ const NO_CALL: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE,
 #[derive(Debug)]
 pub struct MOC_Recording {
     recording: Recording,
-    /// The meshes of the calls in their order, and nothing for other calls. They point into the recording.
+    /// The layouts and the meshes of the calls in their order, where a call has one. The meshes point into the recording and to
+    /// the layouts, neither of which changes.
+    _layouts: Vec<Option<MOC_VertexLayout>>,
     meshes: Vec<Option<MOC_Mesh>>,
 }
 
@@ -268,7 +270,7 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
     guard(|| {
         check_out(out)?;
         // SAFETY: the caller's contract.
-        let MOC_Recording { recording, meshes } = unsafe { recording.as_ref() }.ok_or(NO_RECORDING)?;
+        let MOC_Recording { recording, meshes, .. } = unsafe { recording.as_ref() }.ok_or(NO_RECORDING)?;
         const SIZE: Refusal =
             Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_RecordedCall)");
         // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
@@ -304,36 +306,38 @@ unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recor
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let recording = load()?;
-    // The calls stay where they are: a recording does not change.
-    let meshes = recording.calls.iter().map(mesh_of).collect();
+    let layout = |call| recorded_mesh(call).map(|mesh| mesh.space.layout().into());
+    let layouts: Vec<Option<MOC_VertexLayout>> = recording.calls.iter().map(layout).collect();
+    let meshes = recording.calls.iter().zip(&layouts);
+    let meshes = meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?))).collect();
     // SAFETY: as above.
-    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, meshes }))) };
+    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, _layouts: layouts, meshes }))) };
     Ok(())
 }
 
-/// The mesh of a call that has one.
-fn mesh_of(call: &RecordedCall) -> Option<MOC_Mesh> {
-    let (RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh)) = call else { return None };
-    let RecordedMesh { vertices, space, triangles, options, .. } = &**mesh;
-    let mut layout = space.layout();
-    if layout == VertexLayout::new(0, 0, 0) {
-        // As a MOC_Mesh that would be a packed layout. There is one vertex, for which the stride does not matter.
-        layout.stride = 4;
+/// The recorded mesh of a call that has one.
+fn recorded_mesh(call: &RecordedCall) -> Option<&RecordedMesh> {
+    match call {
+        RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh) => Some(mesh),
+        RecordedCall::ClearBuffer | RecordedCall::TestRect(_) => None,
     }
+}
+
+/// A mesh of a recording in C's form, which points into the recording and to its layout.
+fn described(mesh: &RecordedMesh, layout: &MOC_VertexLayout) -> MOC_Mesh {
     let count = mesh.vertices().map_or(0, |vertices| vertices.len());
-    Some(MOC_Mesh {
+    MOC_Mesh {
         size: size_of::<MOC_Mesh>() as u32,
         index_size: 4,
-        vertices: vertices.as_ptr(),
-        indices: triangles.as_ptr().cast(),
+        vertices: mesh.vertices.as_ptr(),
+        indices: mesh.triangles.as_ptr().cast(),
         vertex_count: count.min(MOC_UNCHECKED as usize - 1) as u32,
-        index_count: triangles.len() as u32,
-        layout: layout.into(),
-        winding: options.winding as i32,
-        clip_planes: options.clip_planes.bits() as i32,
-        reserved: 0,
-        model_to_clip: space.matrix().map_or(core::ptr::null(), |matrix| matrix.as_array().as_ptr()),
-    })
+        triangle_count: (mesh.triangles.len() / 3) as u32,
+        model_to_clip: mesh.space.matrix().map_or(core::ptr::null(), |matrix| matrix.as_array().as_ptr()),
+        layout,
+        winding: mesh.options.winding as i32,
+        clip_planes: mesh.options.clip_planes.bits() as i32,
+    }
 }
 
 fn in_c(size: u32, call: &RecordedCall, mesh: Option<&MOC_Mesh>) -> MOC_RecordedCall {

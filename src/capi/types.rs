@@ -331,7 +331,10 @@ pub(super) fn implementation(value: i32) -> Result<Implementation, Refusal> {
         16 => Implementation::Neon,
         17 => Implementation::Simd128,
         _ => {
-            return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "implementation is not a MOC_Implementation"));
+            return Err(Refusal::new(
+                MOC_Status::MOC_STATUS_INVALID_ENUM,
+                "implementation is not a MOC_Implementation",
+            ));
         }
     })
 }
