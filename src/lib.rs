@@ -12,10 +12,30 @@
 //! Coverage is exact: vertices are snapped to 1/256 pixel, and a pixel is covered when its centre is, by the top-left
 //! rule. Every instruction set (see [`Implementation`]) gives the same bits.
 //!
-//! The way of a triangle is told in `src/pipeline/mod.rs`, the memory's layout in `src/buffer/mod.rs`, the vector
-//! layer in `src/simd/mod.rs`. The C interface is in [`capi`]; C and C++ include what is in `include/`.
+//! ```
+//! use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, Vertices};
+//!
+//! let mut culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
+//! // Each frame: clear, draw occluders, test occludees. A wall at distance 10, in clip space: x, y, z (not read), w.
+//! culling.clear_buffer();
+//! let wall = [[-10.0, -10.0, 0.0, 10.0], [30.0, -10.0, 0.0, 10.0], [-10.0, 30.0, 0.0, 10.0]];
+//! culling.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
+//! // A rectangle in normalised device coordinates, whose nearest point is at distance 12.
+//! assert_eq!(culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0), CullingResult::Occluded);
+//! # Ok::<(), masked_occlusion_culling::Error>(())
+//! ```
+//!
+//! Meshes with a matrix are [`Vertices::model_space`]; a thread pool that draws is [`CullingThreadpool`]; recorded frames are
+//! [`Recording`].
+//!
+//! # Features
+//!
+//! - `capi` (default): the C functions (`capi`), which the headers in `include/` declare. Without it a Rust program exports none.
+//! - `glam` (default): `glam::Mat4` as a source of [`Matrix`]. Without it there are arrays.
 #![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
+// Some functions are for C alone.
+#![cfg_attr(not(feature = "capi"), allow(dead_code))]
 
 mod allocator;
 mod attachment;
