@@ -276,12 +276,15 @@ static void larger_than_memory(void)
 /* Calls on an object whose resolution was never set. */
 static void no_buffer(void)
 {
-    MaskedOcclusionCulling *moc = NULL;
+    MaskedOcclusionCulling *moc = NULL, *other = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER);
+    const MaskedOcclusionCulling *others[2];
     MOC_TriList list = {0, 0, NULL};
     float quad[16], out[16];
     uint32_t w = 1, h = 1;
     int32_t r = MOC_OCCLUDED;
     CHECK_EQ(MOC_Create(NULL, &moc), MOC_STATUS_OK);
+    others[0] = other;
+    others[1] = moc;
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
 #define HAS_NONE(call) CHECK_EQ(call, MOC_STATUS_NO_BUFFER)
     HAS_NONE(MOC_GetResolution(moc, &w, &h));
@@ -289,6 +292,11 @@ static void no_buffer(void)
     HAS_NONE(MOC_ComputeBinWidthHeight(moc, 1, 1, &w, &h));
     HAS_NONE(MOC_ClearBuffer(moc));
     HAS_NONE(MOC_MergeBuffer(moc, moc));
+    HAS_NONE(MOC_MergeBuffer(moc, other));
+    HAS_NONE(MOC_MergeBuffer(other, moc));
+    HAS_NONE(MOC_MergeBuffers(other, others, 2));
+    HAS_NONE(MOC_RecorderStart(moc, "no_buffer.mocrec"));
+    HAS_NONE(MOC_RecordRenderTriangles(moc, quad, QUAD, 2, NULL, 1, 0x1f, NULL, MOC_RESULT_UNKNOWN));
     HAS_NONE(MOC_RenderTriangles(moc, quad, QUAD, 2, REST));
     CHECK_EQ(r, MOC_VISIBLE);
     HAS_NONE(MOC_RenderTriangles(moc, NULL, NULL, 0, REST));
@@ -303,6 +311,7 @@ static void no_buffer(void)
     HAS_NONE(MOC_ComputePixelDepthBuffer(moc, out, 0));
     HAS_NONE(MOC_ComputePixelDepthBufferChecked(moc, out, 16, 0));
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
+    CHECK_EQ(MOC_Destroy(other), MOC_STATUS_OK);
 }
 
 /* Pointers that no compiler would align so, and layouts that make no sense. */

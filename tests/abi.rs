@@ -3,7 +3,7 @@
 //! stays true. `UPDATE_ABI=1 cargo test --test abi` adds what is new; what is there goes or changes by hand, with a
 //! new MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the differences with 32-bit ones (run by
 //! `.ci/i686`).
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 

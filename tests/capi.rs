@@ -1,6 +1,6 @@
 //! Compiles the programs of `capi-tests` with the machine's C and C++ compilers, as a user of the library
 //! would, and runs them against the shared and the static library.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "capi"))]
 
 mod native;
 

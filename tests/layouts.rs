@@ -1,8 +1,8 @@
 //! However vertices lie in memory, and whether the matrix is applied here or beforehand, the buffer is the same.
 
 use masked_occlusion_culling::{
-    BackfaceWinding, ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, ModelSpaceLayout, Settings,
-    Vertices, transform_vertices,
+    BackfaceWinding, ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, Matrix, ModelSpaceLayout,
+    Settings, Vertices, transform_vertices,
 };
 
 const SIZE: (u32, u32) = (150, 90);
@@ -10,6 +10,8 @@ const COUNT: usize = 31 * 3;
 
 /// A column-major matrix without zeros where they could hide a mistake; w is mostly z.
 const MATRIX: [f32; 16] = [1.2, 0.1, 9.0, 0.05, -0.15, 1.4, 9.0, -0.02, 0.03, -0.07, 9.0, 0.9, 0.2, -0.1, 9.0, 1.5];
+
+const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 /// Positions in a box before the camera.
 fn positions() -> Vec<[f32; 3]> {
@@ -50,16 +52,16 @@ fn transforming_is_the_documented_sum() {
 fn transforming_writes_what_fits() {
     let positions = positions();
     let mut out = vec![[7.5; 4]; COUNT + 3];
-    transform_vertices(glam::Mat4::IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut out).unwrap();
+    transform_vertices(IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut out).unwrap();
     for (v, [x, y, z]) in out.iter().zip(&positions) {
         assert_eq!(*v, [*x, *y, *z, 1.0]);
     }
     assert_eq!(out[COUNT..], [[7.5; 4]; 3]);
     let mut short = [[7.5; 4]; 5];
-    transform_vertices(glam::Mat4::IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut short).unwrap();
+    transform_vertices(IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut short).unwrap();
     assert_eq!(short[..], out[..5]);
     let negative = ModelSpaceLayout::new(12, -4, 8);
-    let refused = transform_vertices(glam::Mat4::IDENTITY, positions.as_flattened(), negative, &mut short);
+    let refused = transform_vertices(IDENTITY, positions.as_flattened(), negative, &mut short);
     assert_eq!(refused, Err(masked_occlusion_culling::Error::InvalidLayout));
     assert_eq!(short[..], out[..5]);
 }
@@ -97,6 +99,20 @@ fn a_matrix_gives_what_transforming_beforehand_gives() {
         let got =
             drawn(implementation, Vertices::new(&wide, ModelSpaceLayout::XYZ_PADDED.with_matrix(MATRIX)).unwrap());
         assert!(got == want, "{implementation:?}, 16 bytes apart");
+    }
+}
+
+/// Whoever makes it, column by column.
+#[test]
+fn matrices_of_every_source_are_the_same() {
+    let columns: [[f32; 4]; 4] = std::array::from_fn(|column| std::array::from_fn(|row| MATRIX[4 * column + row]));
+    assert_eq!(Matrix::from(MATRIX).as_array(), &MATRIX);
+    assert_eq!(Matrix::from(&MATRIX), Matrix::from(MATRIX));
+    assert_eq!(Matrix::from(columns), Matrix::from(MATRIX));
+    #[cfg(feature = "glam")]
+    {
+        let matrix = masked_occlusion_culling::glam::Mat4::from_cols_array(&MATRIX);
+        assert_eq!((Matrix::from(matrix), Matrix::from(&matrix)), (Matrix::from(MATRIX), Matrix::from(MATRIX)));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Every function that can refuse a call reports it under its own name.
 
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 

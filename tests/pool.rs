@@ -141,10 +141,9 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         let wider = Mat4::from_scale(Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
                         // z of the mesh is 0, and its w comes as z.
                         let matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.];
+                        let matrix = Mat4::from_cols_array(&matrix) * wider;
                         let space = match numbers.next().is_multiple_of(2) {
-                            true => {
-                                ModelSpaceLayout::new(16, 4, 12).with_matrix(Mat4::from_cols_array(&matrix) * wider)
-                            }
+                            true => ModelSpaceLayout::new(16, 4, 12).with_matrix(matrix.to_cols_array()),
                             false => ClipSpaceLayout::XYZW.into(),
                         };
                         let options = DrawOptions::default().with_winding(BackfaceWinding::None);

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use masked_occlusion_culling::{
     BackfaceWinding, ClipPlanes, ClipSpaceLayout, CullingResult, CullingThreadpool, DrawOptions, Error,
     MaskedOcclusionCulling, ModelSpaceLayout, RecordedCall, Recording, RecordingError, Settings, ThreadpoolSettings,
-    VertexSpace, Vertices, capi,
+    VertexSpace, Vertices,
 };
 use std::path::{Path, PathBuf};
 
@@ -329,8 +329,11 @@ fn a_file_that_cannot_be_read_or_is_none_says_so() {
 }
 
 /// Stride 0: all vertices are one, and there may be more of them than the format can count.
+#[cfg(feature = "capi")]
 #[test]
 fn a_mesh_that_is_too_large_for_the_format_ends_a_recording_that_stays_whole() {
+    use masked_occlusion_culling::capi;
+
     let folder = Folder::new();
     let path = folder.file("large.mocrec");
     let moc = &mut object(16, 16);

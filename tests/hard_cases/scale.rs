@@ -71,7 +71,7 @@ fn measure(subject: &mut Subject, measured: &mut Measured, matrix: &Mat4, triang
         let Some(exact) = Homogeneous::new(&clip, 0.0, SIZE, false) else { continue };
         let farthest = clip.iter().fold(0.0, |m: f64, v| m.max(v[2]));
         subject.clear();
-        subject.render(Vertices::model_space(t, matrix), &[0, 1, 2], &both_sides());
+        subject.render(Vertices::model_space(t, matrix.to_cols_array()), &[0, 1, 2], &both_sides());
         measured.clipped(&exact, 1.0 / farthest, subject.depth(), SIZE.0);
         all.extend_from_slice(subject.depth());
     }
