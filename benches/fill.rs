@@ -26,7 +26,7 @@ fn triangles(size: u32) -> (Vec<[f32; 4]>, Vec<u32>) {
 }
 
 fn fill(c: &mut Criterion) {
-    let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+    let options = DrawOptions::default().with_winding(BackfaceWinding::None);
     for (order, backwards) in [("front-to-back", false), ("back-to-front", true)] {
         let mut group = c.benchmark_group(format!("fill/{order}"));
         for size in SIZES {
@@ -39,8 +39,8 @@ fn fill(c: &mut Criterion) {
                 let mut moc = benches::object(rule);
                 group.bench_function(BenchmarkId::new(name, size), |b| {
                     b.iter(|| {
-                        moc.clear_buffer().expect("there is a buffer");
-                        moc.render_triangles(Vertices::from_clip_space(&vertices), &indices, &options)
+                        moc.clear_buffer();
+                        moc.render_triangles(Vertices::clip_space(&vertices), &indices, &options)
                     });
                 });
             }

@@ -4,7 +4,6 @@
 pub mod scenes;
 
 use fastrand::Rng;
-use glam::Mat4;
 use masked_occlusion_culling::{
     CullingThreadpool, DrawOptions, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
 };
@@ -23,9 +22,8 @@ pub const RULES: [(&str, UpdateRule); 4] = [
 
 /// An object of a size that engines use, or one larger, on the best instruction set.
 pub fn object(update_rule: UpdateRule) -> MaskedOcclusionCulling {
-    let mut moc = MaskedOcclusionCulling::new(Settings { update_rule, ..Settings::default() });
-    moc.set_resolution(WIDTH, HEIGHT).expect("the size is accepted");
-    moc
+    MaskedOcclusionCulling::new(WIDTH, HEIGHT, Settings::default().with_update_rule(update_rule))
+        .expect("the size is accepted")
 }
 
 /// The order in which objects are drawn.
@@ -44,6 +42,7 @@ pub struct View {
     pub name: &'static str,
     pub vertices: Vec<[f32; 4]>,
     pub positions: Vec<[f32; 3]>,
+    pub matrix: [f32; 16],
     pub objects: Vec<Vec<u32>>,
     pub options: DrawOptions,
     pub near: f32,
@@ -54,10 +53,15 @@ impl View {
         self.objects.iter().map(|o| o.len() as u64 / 3).sum()
     }
 
+    /// The positions and their matrix.
+    pub fn model_space(&self) -> Vertices<'_> {
+        Vertices::model_space(&self.positions, self.matrix)
+    }
+
     /// Sets the near plane and draws all objects; the buffer is as it was before.
     pub fn draw(&self, moc: &mut MaskedOcclusionCulling) {
         moc.set_near_clip_plane(self.near).expect("a number");
-        let vertices = Vertices::from_positions(&self.positions);
+        let vertices = self.model_space();
         for object in &self.objects {
             moc.render_triangles(vertices, object, &self.options).expect("the mesh is sound");
         }
@@ -65,7 +69,7 @@ impl View {
 
     /// A frame by a pool, whose object has the near plane: clears, draws all objects and flushes.
     pub fn pool_frame(&self, pool: &CullingThreadpool) {
-        let vertices = Vertices::from_positions(&self.positions);
+        let vertices = self.model_space();
         pool.scope(|scope| {
             pool.clear_buffer().expect("there is a buffer");
             for object in &self.objects {
@@ -95,7 +99,8 @@ fn view(mut scene: Scene, order: Order) -> View {
         positions: scene.vertices.iter().map(|&[x, y, z, _]| [x, y, z]).collect(),
         vertices: scene.vertices,
         objects: scene.objects,
-        options: DrawOptions::with_matrix(Mat4::from_cols_array(&matrix)),
+        matrix,
+        options: DrawOptions::default(),
         near: scene.near,
     }
 }
@@ -104,6 +109,6 @@ fn view(mut scene: Scene, order: Order) -> View {
 pub fn draw_wall(moc: &mut MaskedOcclusionCulling, w: f32) {
     let corner = |x: f32, y: f32| [x * w, y * w, 0.0, w];
     let wall = [corner(-3.0, -1.0), corner(1.0, -1.0), corner(1.0, 3.0)];
-    let options = DrawOptions { winding: masked_occlusion_culling::BackfaceWinding::None, ..DrawOptions::default() };
-    moc.render_triangles(Vertices::from_clip_space(&wall), &[0, 1, 2], &options).expect("a sound triangle");
+    let options = DrawOptions::default().with_winding(masked_occlusion_culling::BackfaceWinding::None);
+    moc.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &options).expect("a sound triangle");
 }

@@ -2,7 +2,7 @@
 
 use benches::{Order, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use masked_occlusion_culling::{CullingThreadpool, UpdateRule, Vertices};
+use masked_occlusion_culling::{CullingThreadpool, ThreadpoolSettings, UpdateRule};
 
 fn pool(c: &mut Criterion) {
     let mut group = c.benchmark_group("pool");
@@ -11,20 +11,21 @@ fn pool(c: &mut Criterion) {
     counts.sort_unstable();
     counts.dedup();
     for view in views(Order::Near) {
-        let vertices = Vertices::from_positions(&view.positions);
+        let vertices = view.model_space();
         group.throughput(Throughput::Elements(view.triangles()));
         let mut moc = benches::object(UpdateRule::ThreeLayer);
         moc.set_near_clip_plane(view.near).expect("a number");
         group.bench_function(BenchmarkId::new("direct", view.name), |b| {
             b.iter(|| {
-                moc.clear_buffer().expect("there is a buffer");
+                moc.clear_buffer();
                 for object in &view.objects {
                     moc.render_triangles(vertices, object, &view.options).expect("indices are right");
                 }
             });
         });
         for &threads in &counts {
-            let pool = CullingThreadpool::new(threads, 4, 4, 32).expect("threads can be started");
+            let settings = ThreadpoolSettings::default().with_threads(threads);
+            let pool = CullingThreadpool::new(settings).expect("threads can be started");
             let mut moc = benches::object(UpdateRule::ThreeLayer);
             moc.set_near_clip_plane(view.near).expect("a number");
             pool.set_buffer(moc);

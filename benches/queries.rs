@@ -3,7 +3,7 @@
 use benches::{HEIGHT, Order, RULES, WIDTH, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
-use masked_occlusion_culling::{CullingResult, Vertices};
+use masked_occlusion_culling::CullingResult;
 
 /// Rectangles of `size` pixels in normalised device coordinates.
 fn rectangles(size: [u32; 2]) -> Vec<[f32; 4]> {
@@ -33,7 +33,7 @@ fn test_rect(c: &mut Criterion) {
                 group.bench_function(id, |b| {
                     b.iter(|| {
                         let hidden =
-                            |r: &&[f32; 4]| moc.test_rect(r[0], r[1], r[2], r[3], w) == Ok(CullingResult::Occluded);
+                            |r: &&[f32; 4]| moc.test_rect(r[0], r[1], r[2], r[3], w) == CullingResult::Occluded;
                         rectangles.iter().filter(hidden).count()
                     });
                 });
@@ -51,7 +51,7 @@ fn test_triangles(c: &mut Criterion) {
             moc.set_near_clip_plane(view.near).expect("a number");
             // Right behind the near plane: everything is hidden, and every triangle is looked at.
             benches::draw_wall(&mut moc, view.near);
-            let vertices = Vertices::from_positions(&view.positions);
+            let vertices = view.model_space();
             group.bench_function(BenchmarkId::new(view.name, name), |b| {
                 b.iter(|| {
                     let hidden =

@@ -13,7 +13,7 @@ fn scenes(c: &mut Criterion) {
                 let mut moc = benches::object(rule);
                 group.bench_function(BenchmarkId::new(format!("{}/{order_name}", view.name), rule_name), |b| {
                     b.iter(|| {
-                        moc.clear_buffer().expect("there is a buffer");
+                        moc.clear_buffer();
                         view.draw(&mut moc);
                     });
                 });
@@ -27,11 +27,12 @@ fn instruction_sets(c: &mut Criterion) {
     for view in views(Order::Near) {
         group.throughput(Throughput::Elements(view.triangles()));
         for &implementation in Implementation::available() {
-            let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
-            moc.set_resolution(benches::WIDTH, benches::HEIGHT).expect("the size is accepted");
+            let settings = Settings::default().with_implementation(implementation);
+            let mut moc =
+                MaskedOcclusionCulling::new(benches::WIDTH, benches::HEIGHT, settings).expect("the size is accepted");
             group.bench_function(BenchmarkId::new(view.name, format!("{implementation:?}")), |b| {
                 b.iter(|| {
-                    moc.clear_buffer().expect("there is a buffer");
+                    moc.clear_buffer();
                     view.draw(&mut moc);
                 });
             });

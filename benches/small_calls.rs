@@ -28,25 +28,25 @@ fn small_calls(c: &mut Criterion) {
     let clip: Vec<[[f32; 4]; 8]> = positions.iter().map(|b| b.map(|[x, y, z]| [x, y, 0.0, z])).collect();
     let mut matrix = Mat4::IDENTITY;
     (matrix.z_axis.w, matrix.w_axis.w) = (1.0, 0.0);
-    let with_matrix = DrawOptions::with_matrix(matrix);
     let mut group = c.benchmark_group("twelve-triangles");
     group.throughput(Throughput::Elements(BOXES as u64));
     for (name, rule) in RULES {
         let mut moc = benches::object(rule);
         group.bench_function(BenchmarkId::new("clip-space", name), |b| {
             b.iter(|| {
-                moc.clear_buffer().expect("there is a buffer");
+                moc.clear_buffer();
                 for vertices in &clip {
-                    moc.render_triangles(Vertices::from_clip_space(vertices), &BOX, &DrawOptions::default())
+                    moc.render_triangles(Vertices::clip_space(vertices), &BOX, &DrawOptions::default())
                         .expect("a sound mesh");
                 }
             });
         });
         group.bench_function(BenchmarkId::new("matrix", name), |b| {
             b.iter(|| {
-                moc.clear_buffer().expect("there is a buffer");
+                moc.clear_buffer();
                 for vertices in &positions {
-                    moc.render_triangles(Vertices::from_positions(vertices), &BOX, &with_matrix).expect("a sound mesh");
+                    moc.render_triangles(Vertices::model_space(vertices, matrix), &BOX, &DrawOptions::default())
+                        .expect("a sound mesh");
                 }
             });
         });
@@ -57,7 +57,7 @@ fn small_calls(c: &mut Criterion) {
     group.bench_function("outside", |b| {
         b.iter(|| {
             for vertices in &away {
-                moc.render_triangles(Vertices::from_clip_space(vertices), &BOX, &DrawOptions::default())
+                moc.render_triangles(Vertices::clip_space(vertices), &BOX, &DrawOptions::default())
                     .expect("a sound mesh");
             }
         });

@@ -2,22 +2,21 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
-use glam::Mat4;
-use masked_occlusion_culling::{VertexLayout, Vertices, transform_vertices};
+use masked_occlusion_culling::{Matrix, ModelSpaceLayout, transform_vertices};
 
 fn transform(c: &mut Criterion) {
     let mut rng = Rng::with_seed(1);
-    let matrix = Mat4::from_cols_array(&std::array::from_fn(|_| rng.f32()));
+    let matrix = Matrix::from(std::array::from_fn::<f32, 16, _>(|_| rng.f32()));
     let mut group = c.benchmark_group("transform");
     for count in [8, 1000, 100_000] {
         let data: Vec<f32> = (0..3 * count).map(|_| rng.f32()).collect();
         let n = count as i32;
         let mut out = vec![[0.0; 4]; count];
         group.throughput(Throughput::Elements(count as u64));
-        for (name, layout) in [("packed", VertexLayout::POSITIONS), ("arrays", VertexLayout::new(4, 4 * n, 8 * n))] {
-            let vertices = Vertices::new(&data, layout).expect("offsets are not negative");
+        let arrays = ModelSpaceLayout::new(4, 4 * n, 8 * n);
+        for (name, layout) in [("packed", ModelSpaceLayout::XYZ), ("arrays", arrays)] {
             group.bench_function(BenchmarkId::new(name, count), |b| {
-                b.iter(|| transform_vertices(&matrix, vertices, &mut out));
+                b.iter(|| transform_vertices(matrix, &data, layout, &mut out));
             });
         }
     }

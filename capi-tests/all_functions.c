@@ -7,13 +7,13 @@ enum { W = 256, H = 136 };
 
 static MaskedOcclusionCulling *make(int32_t implementation, int32_t rule, int32_t y_axis)
 {
-    MOC_Settings settings;
+    MOC_Settings settings = {.size = sizeof settings};
     MaskedOcclusionCulling *moc = NULL;
     CHECK_EQ(MOC_DefaultSettings(&settings), MOC_STATUS_OK);
     CHECK_EQ(settings.implementation, MOC_AVX512);
     CHECK_EQ(settings.update_rule, MOC_UPDATE_RULE_THREE_LAYER);
     CHECK_EQ(settings.y_axis, MOC_Y_AXIS_DOWN);
-    CHECK_EQ(settings.precise_coverage, 1);
+    CHECK_EQ(settings.size, sizeof settings);
     CHECK_EQ(settings.statistics, 0);
     CHECK(settings.alloc == NULL && settings.free == NULL);
     settings.statistics = 1;
@@ -105,7 +105,7 @@ static void wall(int32_t implementation, int32_t rule, int32_t y_axis)
 {
     static float depth[W * H], flipped[W * H];
     MaskedOcclusionCulling *moc = make(implementation, rule, y_axis);
-    MOC_Statistics stats;
+    MOC_Statistics stats = {.size = sizeof stats};
     int64_t dropped = -1;
     float quad[16];
     int y;
@@ -249,6 +249,141 @@ static void checked(int32_t implementation)
 #undef REST
     CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
     CHECK_EQ(covered(depth, 0, H), W * H);
+    CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
+}
+
+/* A mesh as a struct gives the bits and answers of the same arguments one by one. */
+static void meshes(int32_t implementation)
+{
+    static float expected[W * H], depth[W * H];
+    /* x' = x, y' = y, w' = z */
+    const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0};
+    const MOC_VertexLayout backwards = {12, -4, -8};
+    const uint32_t bad[6] = {0, 1, 2, 0, 4, 3};
+    MOC_Mesh mesh = {.size = sizeof mesh}, wrong;
+    float quad[16], three[12], swapped[12], storage[9 * 4];
+    MOC_TriList list = {4, 0, NULL};
+    MaskedOcclusionCulling *moc = make(implementation, MOC_UPDATE_RULE_THREE_LAYER, MOC_Y_AXIS_DOWN);
+    int32_t result = -1;
+    int i;
+    list.data = storage;
+    quad_at(quad, -0.7f, -0.6f, 0.8f, 0.5f, 3.0f);
+    for (i = 0; i < 4; i++) {
+        three[3 * i] = swapped[3 * i + 2] = quad[4 * i];
+        three[3 * i + 1] = swapped[3 * i + 1] = quad[4 * i + 1];
+        three[3 * i + 2] = swapped[3 * i] = quad[4 * i + 3];
+    }
+    mesh.vertices = quad;
+    mesh.vertex_count = 4;
+    mesh.indices = QUAD;
+    mesh.triangle_count = 2;
+    mesh.winding = MOC_BACKFACE_CW;
+    mesh.clip_planes = MOC_CLIP_PLANE_ALL;
+    CHECK_EQ(MOC_RenderMesh(moc, &mesh, &result), MOC_STATUS_NO_BUFFER);
+    CHECK_EQ(MOC_TestMesh(moc, &mesh, &result), MOC_STATUS_NO_BUFFER);
+    CHECK_EQ(MOC_BinMesh(moc, &mesh, &list, 1, 1, &result), MOC_STATUS_NO_BUFFER);
+    CHECK_EQ(MOC_RecordMesh(moc, &mesh, MOC_RESULT_UNKNOWN), MOC_STATUS_NO_BUFFER);
+    CHECK_EQ(MOC_SetResolution(moc, W, H), MOC_STATUS_OK);
+    render(moc, quad);
+    CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, expected, 0), MOC_STATUS_OK);
+    for (i = 0; i < 4; i++) {
+        /* Packed x, y, z, w without a matrix; packed x, y, z with one; another layout, whose offsets may be negative although
+         * the number of vertices is given; and one whose number is not. */
+        if (i >= 1) {
+            mesh.model_to_clip = matrix;
+            mesh.vertices = three;
+        }
+        if (i >= 2) {
+            mesh.layout = &backwards;
+            mesh.vertices = swapped + 2;
+        }
+        if (i >= 3) {
+            mesh.vertex_count = MOC_UNCHECKED;
+            mesh.index_size = 4;
+        }
+        MOC_ClearBuffer(moc);
+        CHECK_EQ(MOC_TestMesh(moc, &mesh, &result), MOC_STATUS_OK);
+        CHECK_EQ(result, MOC_VISIBLE);
+        CHECK_EQ(MOC_RenderMesh(moc, &mesh, &result), MOC_STATUS_OK);
+        CHECK_EQ(result, MOC_VISIBLE);
+        CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
+        CHECK(memcmp(depth, expected, sizeof depth) == 0);
+        MOC_ClearBuffer(moc);
+        list.count = 0;
+        CHECK_EQ(MOC_BinMesh(moc, &mesh, &list, 1, 1, NULL), MOC_STATUS_OK);
+        CHECK_EQ(MOC_RenderTrilist(moc, &list, NULL), MOC_STATUS_OK);
+        CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
+        CHECK(memcmp(depth, expected, sizeof depth) == 0);
+        CHECK_EQ(MOC_RecordMesh(moc, &mesh, MOC_RESULT_UNKNOWN), MOC_STATUS_OK);
+        mesh.winding = MOC_BACKFACE_CCW;
+        CHECK_EQ(MOC_TestMesh(moc, &mesh, &result), MOC_STATUS_OK);
+        CHECK_EQ(result, MOC_VIEW_CULLED);
+        mesh.winding = MOC_BACKFACE_CW;
+    }
+
+    MOC_ClearBuffer(moc);
+    list.count = 0;
+    for (i = 0; i < 10; i++) {
+        const int32_t status[] = {MOC_STATUS_INVALID_SIZE, MOC_STATUS_INVALID_SIZE, MOC_STATUS_INVALID_ENUM,
+                                  MOC_STATUS_INVALID_SIZE, MOC_STATUS_NULL_POINTER, MOC_STATUS_NULL_POINTER,
+                                  MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INDEX_OUT_OF_RANGE,
+                                  MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_ENUM};
+        wrong = mesh;
+        wrong.vertex_count = 4;
+        switch (i) {
+        case 0: wrong.size = 0; break;
+        case 1: wrong.size = sizeof wrong - 1; break;
+        case 2: wrong.index_size = 2; break;
+        case 3: wrong.triangle_count = 0x80000000u; break;
+        case 4: wrong.vertices = NULL; break;
+        case 5: wrong.indices = NULL; break;
+        case 6: wrong.indices = bad; break;
+        case 7: wrong.vertex_count = 3; break;
+        case 8: wrong.winding = 3; break;
+        case 9: wrong.clip_planes = 0x20; break;
+        }
+        result = MOC_OCCLUDED;
+        CHECK_EQ(MOC_RenderMesh(moc, &wrong, &result), status[i]);
+        CHECK_EQ(result, MOC_VISIBLE);
+        CHECK_EQ(MOC_TestMesh(moc, &wrong, &result), status[i]);
+        CHECK_EQ(MOC_BinMesh(moc, &wrong, &list, 1, 1, &result), status[i]);
+        CHECK_EQ(MOC_RecordMesh(moc, &wrong, MOC_RESULT_UNKNOWN), status[i]);
+    }
+    CHECK_EQ(list.count, 0);
+    CHECK_EQ(MOC_RenderMesh(moc, NULL, &result), MOC_STATUS_NULL_POINTER);
+    CHECK_EQ(MOC_RecordMesh(moc, &mesh, 2), MOC_STATUS_INVALID_ENUM);
+    CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
+    CHECK_EQ(covered(depth, 0, H), 0);
+    CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
+}
+
+/* Structs of a smaller size than the library's are refused, and of larger ones it writes what it knows. */
+static void sizes(void)
+{
+    struct {
+        MOC_Settings settings;
+        char more[16];
+    } later = {.settings = {.size = sizeof later}};
+    struct {
+        MOC_Statistics statistics;
+        int64_t more;
+    } counted = {.statistics = {.size = sizeof counted}, .more = -77};
+    MOC_Settings settings = {.size = sizeof settings - 1};
+    MOC_Statistics statistics = {.size = 72};
+    MaskedOcclusionCulling *moc = NULL;
+    CHECK_EQ(MOC_DefaultSettings(&settings), MOC_STATUS_INVALID_SIZE);
+    CHECK_EQ(settings.implementation, 0);
+    CHECK_EQ(MOC_Create(&settings, &moc), MOC_STATUS_INVALID_SIZE);
+    CHECK(moc == NULL);
+    memset(later.more, 7, sizeof later.more);
+    CHECK_EQ(MOC_DefaultSettings(&later.settings), MOC_STATUS_OK);
+    CHECK_EQ(later.settings.size, sizeof later);
+    CHECK(later.more[0] == 7 && later.more[15] == 7);
+    CHECK_EQ(MOC_Create(&later.settings, &moc), MOC_STATUS_OK);
+    CHECK_EQ(MOC_GetStatistics(moc, &statistics), MOC_STATUS_INVALID_SIZE);
+    CHECK_EQ(MOC_GetStatistics(moc, &counted.statistics), MOC_STATUS_OK);
+    CHECK_EQ(counted.statistics.size, sizeof counted);
+    CHECK_EQ(counted.more, -77);
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
@@ -416,6 +551,7 @@ int main(void)
     versions();
     transform();
     callbacks();
+    sizes();
     for (rule = MOC_UPDATE_RULE_THREE_LAYER; rule <= MOC_UPDATE_RULE_FOUR_LAYER; rule++) {
         properties(rule);
         for (i = 0; i < sizeof implementations / sizeof *implementations; i++) {
@@ -429,6 +565,7 @@ int main(void)
     for (i = 0; i < sizeof implementations / sizeof *implementations; i++) {
         layouts(implementations[i]);
         checked(implementations[i]);
+        meshes(implementations[i]);
         near_plane(implementations[i]);
     }
     return check_report("all_functions");

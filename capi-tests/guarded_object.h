@@ -14,8 +14,9 @@ enum { N_IMPLEMENTATIONS = sizeof IMPLEMENTATIONS / sizeof *IMPLEMENTATIONS };
 /* An object whose own memory is guarded. */
 static inline MaskedOcclusionCulling *make(int32_t implementation, int32_t rule)
 {
-    MOC_Settings settings;
+    MOC_Settings settings = {0};
     MaskedOcclusionCulling *moc = NULL;
+    settings.size = sizeof settings;
     CHECK_EQ(MOC_DefaultSettings(&settings), MOC_STATUS_OK);
     settings.implementation = implementation;
     settings.update_rule = rule;

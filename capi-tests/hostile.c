@@ -26,8 +26,8 @@ static void null_pointers(void)
     const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     MaskedOcclusionCulling *moc = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER), *none = NULL;
     MOC_TriList list = {3, 1, NULL};
-    MOC_Settings settings;
-    MOC_Statistics stats;
+    MOC_Settings settings = {.size = sizeof settings};
+    MOC_Statistics stats = {.size = sizeof stats};
     int64_t dropped;
     MOC_AlignedAlloc alloc;
     MOC_AlignedFree release;
@@ -142,10 +142,9 @@ static void wrong_integers(void)
     list.data = storage;
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
     for (i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        for (k = 0; k < 4; k++) {
-            MOC_Settings settings;
-            int32_t *field[] = {&settings.implementation, &settings.update_rule, &settings.y_axis,
-                                &settings.precise_coverage};
+        for (k = 0; k < 3; k++) {
+            MOC_Settings settings = {.size = sizeof settings};
+            int32_t *field[] = {&settings.implementation, &settings.update_rule, &settings.y_axis};
             CHECK_EQ(MOC_DefaultSettings(&settings), MOC_STATUS_OK);
             *field[k] = wrong[i];
             none = moc;
@@ -277,12 +276,15 @@ static void larger_than_memory(void)
 /* Calls on an object whose resolution was never set. */
 static void no_buffer(void)
 {
-    MaskedOcclusionCulling *moc = NULL;
+    MaskedOcclusionCulling *moc = NULL, *other = make(MOC_AVX512, MOC_UPDATE_RULE_THREE_LAYER);
+    const MaskedOcclusionCulling *others[2];
     MOC_TriList list = {0, 0, NULL};
     float quad[16], out[16];
     uint32_t w = 1, h = 1;
     int32_t r = MOC_OCCLUDED;
     CHECK_EQ(MOC_Create(NULL, &moc), MOC_STATUS_OK);
+    others[0] = other;
+    others[1] = moc;
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
 #define HAS_NONE(call) CHECK_EQ(call, MOC_STATUS_NO_BUFFER)
     HAS_NONE(MOC_GetResolution(moc, &w, &h));
@@ -290,6 +292,11 @@ static void no_buffer(void)
     HAS_NONE(MOC_ComputeBinWidthHeight(moc, 1, 1, &w, &h));
     HAS_NONE(MOC_ClearBuffer(moc));
     HAS_NONE(MOC_MergeBuffer(moc, moc));
+    HAS_NONE(MOC_MergeBuffer(moc, other));
+    HAS_NONE(MOC_MergeBuffer(other, moc));
+    HAS_NONE(MOC_MergeBuffers(other, others, 2));
+    HAS_NONE(MOC_RecorderStart(moc, "no_buffer.mocrec"));
+    HAS_NONE(MOC_RecordRenderTriangles(moc, quad, QUAD, 2, NULL, 1, 0x1f, NULL, MOC_RESULT_UNKNOWN));
     HAS_NONE(MOC_RenderTriangles(moc, quad, QUAD, 2, REST));
     CHECK_EQ(r, MOC_VISIBLE);
     HAS_NONE(MOC_RenderTriangles(moc, NULL, NULL, 0, REST));
@@ -304,6 +311,7 @@ static void no_buffer(void)
     HAS_NONE(MOC_ComputePixelDepthBuffer(moc, out, 0));
     HAS_NONE(MOC_ComputePixelDepthBufferChecked(moc, out, 16, 0));
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
+    CHECK_EQ(MOC_Destroy(other), MOC_STATUS_OK);
 }
 
 /* Pointers that no compiler would align so, and layouts that make no sense. */

@@ -2,6 +2,8 @@
 // the argument and what was wrong with it.
 #include "check.h"
 
+// What that would stop is reported here.
+#define MOC_CHECK_LAYOUT 0
 #include "CullingThreadpool.h"
 
 #include <atomic>
@@ -156,6 +158,56 @@ void OddRectangles()
     MOC::Destroy(moc);
 }
 
+// A matrix with the layout of clip-space vertices is not refused, but reported.
+void MatrixWithTheLayoutOfClipSpace()
+{
+    const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 10};
+    const MOC::BackfaceWinding winding = MOC::BACKFACE_CW;
+    const MOC::ClipPlanes planes = MOC::CLIP_PLANE_ALL;
+    float quad[16], data[9 * 4];
+    MOC::TriList list = {4, 0, data};
+    quad_at(quad, -1, -1, 1, 1, 10);
+    MOC *moc = MOC::Create();
+    // Refused for another reason: one message, and none is left for the next call.
+    moc->RenderTriangles(quad, QUAD, 2, matrix);
+    EXPECT(MOC_STATUS_NO_BUFFER, "MOC_RenderTriangles: no buffer");
+    moc->SetResolution(320, 200);
+    CHECK(told.empty());
+    moc->RenderTriangles(quad, QUAD, 2, matrix);
+    EXPECT(MOC_STATUS_OK, "MOC_RenderTriangles: a matrix with the layout (16, 4, 12)");
+    CHECK_EQ(moc->GetLastStatus(), MOC_STATUS_OK);
+    moc->TestTriangles(quad, QUAD, 2, matrix);
+    EXPECT(MOC_STATUS_OK, "MOC_TestTriangles: a matrix with the layout (16, 4, 12)");
+    moc->BinTriangles(quad, QUAD, 2, &list, 1, 1, matrix);
+    EXPECT(MOC_STATUS_OK, "MOC_BinTriangles: a matrix with the layout (16, 4, 12)");
+    CullingThreadpool pool(0, 1, 1);
+    pool.SetBuffer(moc);
+    pool.SetMatrix(matrix);
+    pool.RenderTriangles(quad, QUAD, 2);
+    EXPECT(MOC_STATUS_OK, "MOC_ThreadpoolRenderTriangles: a matrix with the layout (16, 4, 12)");
+    pool.SetVertexLayout(MOC::VertexLayout(16, 4, 8));
+    pool.RenderTriangles(quad, QUAD, 2);
+    pool.Flush();
+    moc->RenderTriangles(quad, QUAD, 2);
+    moc->RenderTriangles(quad, QUAD, 2, matrix, winding, planes, MOC::VertexLayout(16, 4, 8));
+    MOC_Mesh mesh = {};
+    mesh.size = sizeof(mesh);
+    mesh.vertices = quad;
+    mesh.vertex_count = 4;
+    mesh.indices = QUAD;
+    mesh.triangle_count = 2;
+    mesh.model_to_clip = matrix;
+    mesh.clip_planes = MOC_CLIP_PLANE_ALL;
+    // Without a layout: packed x, y, z.
+    CHECK_EQ(MOC_TestMesh(moc, &mesh, nullptr), MOC_STATUS_OK);
+    CHECK(told.empty());
+    mesh.vertex_count = 2;
+    CHECK_EQ(MOC_TestMesh(moc, &mesh, nullptr), MOC_STATUS_INDEX_OUT_OF_RANGE);
+    EXPECT(MOC_STATUS_INDEX_OUT_OF_RANGE, "MOC_TestMesh: an index is not below vertex_count");
+    pool.SetBuffer(nullptr);
+    MOC::Destroy(moc);
+}
+
 void Pool()
 {
     float quad[16];
@@ -259,6 +311,7 @@ int main()
     MOC::SetMessageCallback(Listen, &told);
     WhatIsRefused();
     OddRectangles();
+    MatrixWithTheLayoutOfClipSpace();
     Pool();
     CallbacksThatCall();
     Threads();

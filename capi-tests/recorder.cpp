@@ -188,9 +188,34 @@ void Refused()
     fclose(file);
     MOC_Recording *loaded = nullptr;
     CHECK_EQ(MOC_RecordingFromMemory(bytes.data(), bytes.size(), &loaded), MOC_STATUS_OK);
-    MOC_RecordedCall call;
-    MOC_RecordingInfo info;
+    MOC_RecordedCall call = {};
+    MOC_RecordingInfo info = {};
+    CHECK_EQ(MOC_RecordingGetInfo(loaded, &info), MOC_STATUS_INVALID_SIZE);
+    CHECK_EQ(MOC_RecordingGetCall(loaded, 0, &call), MOC_STATUS_INVALID_SIZE);
+    call.size = sizeof(call);
+    info.size = sizeof(info);
     CHECK_EQ(MOC_RecordingGetInfo(loaded, &info), MOC_STATUS_OK);
+    CHECK(info.num_calls > 0);
+    // The calls, made again, give the answers that were recorded.
+    MOC *again = MOC::Create();
+    again->SetResolution(info.width, info.height);
+    again->SetNearClipPlane(info.near_clip_plane);
+    for (uint32_t k = 0; k < info.num_calls; ++k)
+    {
+        int32_t answer = MOC_RESULT_UNKNOWN;
+        CHECK_EQ(MOC_RecordingGetCall(loaded, k, &call), MOC_STATUS_OK);
+        CHECK((call.mesh != nullptr) == (call.kind == MOC_RECORDED_RENDER_TRIANGLES || call.kind == MOC_RECORDED_TEST_TRIANGLES));
+        if (call.kind == MOC_RECORDED_CLEAR_BUFFER)
+            again->ClearBuffer();
+        else if (call.kind == MOC_RECORDED_TEST_RECT)
+            answer = again->TestRect(call.rect[0], call.rect[1], call.rect[2], call.rect[3], call.rect[4]);
+        else if (call.kind == MOC_RECORDED_RENDER_TRIANGLES)
+            CHECK_EQ(MOC_RenderMesh(again, call.mesh, &answer), MOC_STATUS_OK);
+        else
+            CHECK_EQ(MOC_TestMesh(again, call.mesh, &answer), MOC_STATUS_OK);
+        CHECK(call.result == MOC_RESULT_UNKNOWN || call.result == answer);
+    }
+    MOC::Destroy(again);
     CHECK_EQ(MOC_RecordingGetCall(loaded, info.num_calls, &call), MOC_STATUS_INDEX_OUT_OF_RANGE);
     CHECK_EQ(MOC_RecordingGetCall(loaded, 0, nullptr), MOC_STATUS_NULL_POINTER);
     CHECK_EQ(MOC_RecordingGetInfo(nullptr, &info), MOC_STATUS_NULL_POINTER);

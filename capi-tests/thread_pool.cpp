@@ -24,7 +24,8 @@ const int32_t RULES[N_RULES] = {MOC_UPDATE_RULE_THREE_LAYER, MOC_UPDATE_RULE_QUI
 MOC *Make(unsigned int width, unsigned int height, int32_t implementation = MOC_AVX512,
           int32_t rule = MOC_UPDATE_RULE_THREE_LAYER)
 {
-    MOC_Settings settings;
+    MOC_Settings settings = {};
+    settings.size = sizeof(settings);
     MOC_DefaultSettings(&settings);
     settings.implementation = implementation;
     settings.update_rule = rule;

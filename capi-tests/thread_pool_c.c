@@ -17,7 +17,7 @@ static float expected[W * H], depth[W * H];
 
 static MaskedOcclusionCulling *make(int32_t rule)
 {
-    MOC_Settings settings;
+    MOC_Settings settings = {.size = sizeof settings};
     MaskedOcclusionCulling *moc = NULL;
     OK(MOC_DefaultSettings(&settings));
     settings.update_rule = rule;

@@ -74,7 +74,8 @@ void DrawBinned(MOC *moc, const Scene &scene)
 
 void Run(int32_t implementation, int32_t rule, const Scene &scene)
 {
-    MOC_Settings settings;
+    MOC_Settings settings = {};
+    settings.size = sizeof(settings);
     MOC_DefaultSettings(&settings);
     settings.implementation = implementation;
     settings.update_rule = rule;

@@ -17,7 +17,7 @@ int main(void) {
         return 1;
     }
 
-    MOC_Settings settings;
+    MOC_Settings settings = {.size = sizeof settings};
     check(MOC_DefaultSettings(&settings), "settings");
     struct MaskedOcclusionCulling *moc = NULL;
     check(MOC_Create(&settings, &moc), "create");
@@ -33,20 +33,28 @@ int main(void) {
         -4, 4, 0, 5,
     };
     const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-    const size_t floats = sizeof vertices / sizeof *vertices;
+    /* What is not named is null or zero: no matrix, and packed vertices. */
+    MOC_Mesh square = {
+        .size = sizeof square,
+        .vertices = vertices,
+        .vertex_count = 4,
+        .indices = triangles,
+        .triangle_count = 2,
+        .winding = MOC_BACKFACE_CW,
+        .clip_planes = MOC_CLIP_PLANE_ALL,
+    };
     int32_t result;
-    check(MOC_RenderTrianglesChecked(moc, vertices, floats, triangles, 2, NULL, MOC_BACKFACE_CW, MOC_CLIP_PLANE_ALL,
-                                     NULL, &result),
-          "render");
+    check(MOC_RenderMesh(moc, &square, &result), "render");
 
     check(MOC_TestRect(moc, -0.1f, -0.1f, 0.1f, 0.1f, 8, &result), "test");
     printf("behind the square: %s\n", result == MOC_OCCLUDED ? "occluded" : "visible");
     const int hidden = result == MOC_OCCLUDED;
 
-    /* The checked functions know the length of the array: a bad index is an error, and nothing is drawn. */
+    /* The number of vertices is known: a bad index is an error, and nothing is drawn. */
     const uint32_t bad[] = {0, 1, 4};
-    const int32_t status = MOC_RenderTrianglesChecked(moc, vertices, floats, bad, 1, NULL, MOC_BACKFACE_CW,
-                                                      MOC_CLIP_PLANE_ALL, NULL, NULL);
+    square.indices = bad;
+    square.triangle_count = 1;
+    const int32_t status = MOC_RenderMesh(moc, &square, NULL);
     printf("an index too high: %s\n", MOC_StatusText(status));
 
     check(MOC_Destroy(moc), "destroy");

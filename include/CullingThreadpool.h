@@ -181,8 +181,8 @@ public:
                          ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,
                          const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
-        const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
-        MOC_ThreadpoolRenderMesh(mPool, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &plain);
+        const Described described(inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, vtxLayout);
+        MOC_ThreadpoolRenderMesh(mPool, &described.mesh);
     }
 
     /** Tests a rectangle against what is drawn by now; see MaskedOcclusionCulling::TestRect. */
@@ -209,9 +209,9 @@ public:
                                 ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL,
                                 const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
-        const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
+        const Described described(inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, vtxLayout);
         int32_t result = MOC_VISIBLE;
-        MOC_ThreadpoolTestMesh(mPool, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &plain, &result);
+        MOC_ThreadpoolTestMesh(mPool, &described.mesh, &result);
         return static_cast<CullingResult>(result);
     }
 
@@ -236,6 +236,31 @@ public:
     }
 
 private:
+    /* Points to the layout. */
+    struct Described
+    {
+        MOC_VertexLayout layout;
+        MOC_Mesh mesh;
+
+        Described(const float *inVtx, const unsigned int *inTris, int nTris, const float *modelToClipMatrix,
+                  BackfaceWinding bfWinding, ClipPlanes clipPlaneMask, const VertexLayout &vtxLayout)
+            : layout(MaskedOcclusionCulling::Layout(vtxLayout, modelToClipMatrix)), mesh()
+        {
+            mesh.size = sizeof(mesh);
+            mesh.vertices = inVtx;
+            mesh.vertex_count = MOC_UNCHECKED;
+            mesh.indices = inTris;
+            /* A negative number is refused, as one above INT32_MAX. */
+            mesh.triangle_count = static_cast<uint32_t>(nTris);
+            mesh.model_to_clip = modelToClipMatrix;
+            mesh.layout = &layout;
+            mesh.winding = bfWinding;
+            mesh.clip_planes = clipPlaneMask;
+        }
+        Described(const Described &) = delete;
+        Described &operator=(const Described &) = delete;
+    };
+
     MOC_Threadpool *mPool = nullptr;
 };
 

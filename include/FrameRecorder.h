@@ -79,7 +79,8 @@ struct FrameRecording
             return false;
         /* Also when a vector throws. */
         const Guard guard = {recording};
-        MOC_RecordingInfo info;
+        MOC_RecordingInfo info = {};
+        info.size = sizeof(info);
         MOC_RecordingGetInfo(recording, &info);
         outRecording.mNearClipPlane = info.near_clip_plane;
         outRecording.mResolutionWidth = info.width;
@@ -87,7 +88,8 @@ struct FrameRecording
         outRecording.mPlaybackOrder.reserve(info.num_calls);
         for (uint32_t i = 0; i < info.num_calls; ++i)
         {
-            MOC_RecordedCall call;
+            MOC_RecordedCall call = {};
+            call.size = sizeof(call);
             MOC_RecordingGetCall(recording, i, &call);
             outRecording.Append(call);
         }
@@ -117,16 +119,18 @@ private:
             index = static_cast<int>(mTriangleEntries.size());
             mTriangleEntries.push_back(TrianglesEntry());
             TrianglesEntry &entry = mTriangleEntries.back();
+            const MOC_Mesh &mesh = *call.mesh;
+            const unsigned int *const indices = static_cast<const unsigned int *>(mesh.indices);
             entry.mCullingResult = result;
-            entry.mVertices.assign(call.vertices, call.vertices + call.vertex_floats);
-            entry.mTriangles.assign(call.triangles, call.triangles + 3 * static_cast<size_t>(call.n_triangles));
-            entry.mHasModelToClipMatrix = call.model_to_clip != nullptr;
+            entry.mVertices.assign(mesh.vertices, mesh.vertices + call.vertex_floats);
+            entry.mTriangles.assign(indices, indices + 3 * static_cast<size_t>(mesh.triangle_count));
+            entry.mHasModelToClipMatrix = mesh.model_to_clip != nullptr;
             if (entry.mHasModelToClipMatrix)
-                memcpy(entry.mModelToClipMatrix, call.model_to_clip, sizeof(entry.mModelToClipMatrix));
-            entry.mbfWinding = static_cast<MaskedOcclusionCulling::BackfaceWinding>(call.winding);
-            entry.mVertexLayout = MaskedOcclusionCulling::VertexLayout(call.layout.stride, call.layout.offset_y,
-                                                                       call.layout.offset_zw);
-            entry.mClipPlaneMask = static_cast<MaskedOcclusionCulling::ClipPlanes>(call.clip_planes);
+                memcpy(entry.mModelToClipMatrix, mesh.model_to_clip, sizeof(entry.mModelToClipMatrix));
+            entry.mbfWinding = static_cast<MaskedOcclusionCulling::BackfaceWinding>(mesh.winding);
+            entry.mVertexLayout = MaskedOcclusionCulling::VertexLayout(mesh.layout->stride, mesh.layout->offset_y,
+                                                                       mesh.layout->offset_zw);
+            entry.mClipPlaneMask = static_cast<MaskedOcclusionCulling::ClipPlanes>(mesh.clip_planes);
             entry.mHasScissorRect = false;
         }
         mPlaybackOrder.push_back(std::pair<char, int>(static_cast<char>(call.kind), index));

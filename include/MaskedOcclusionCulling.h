@@ -38,6 +38,7 @@
 /* For programs that include this header inside extern "C", where templates and overloads are not allowed. */
 extern "C++" {
 
+#include <assert.h>
 #include <stddef.h>
 
 #include "MaskedOcclusionCullingAllocation.h"
@@ -53,17 +54,20 @@ extern "C++" {
  * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK says: more is culled where dense geometry is drawn in no order,
  *                   more slowly and with 28 bytes for 8x4 pixels. 0 (default): as QUICK_MASK says.
  * USE_D3D           1: row 0 is the top of the screen (default); 0: the bottom (OpenGL).
- * PRECISE_COVERAGE  1 (default) or 0. Coverage is exact either way.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
  * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
  *                   0 (default): GetStatistics returns zeros. GetNumDroppedTriangles counts either way.
+ * MOC_CHECK_LAYOUT  1 (default without NDEBUG): RenderTriangles, TestTriangles, BinTriangles and RecordRenderTriangles assert
+ *                   that a matrix does not come with VertexLayout(16, 4, 12), the default, whose last offset then names z: x, y,
+ *                   z, w packed is (16, 4, 8) then. 0 (default with NDEBUG): they do not. For programs whose z does lie
+ *                   at 12; they may also be told of it by SetMessageCallback, with MOC_STATUS_OK.
  *
  * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
  * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
  * `#if QUICK_MASK` of the program then is false, and -Wundef says so. Define them to have it as before.
  *
- * Accepted without effect, because the answer holds always: CLIPPING_PRESERVES_ORDER (the order is kept),
- * MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, a load and a branch a call while it is off;
+ * Accepted without effect, because the answer holds always: PRECISE_COVERAGE (coverage is exact),
+ * CLIPPING_PRESERVES_ORDER (the order is kept), MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, a load and a branch a call while it is off;
  * FrameRecorder.h reads recordings).
  */
 #ifndef USE_D3D
@@ -81,6 +85,13 @@ extern "C++" {
 #ifndef MOC_FOUR_LAYERS
 #define MOC_FOUR_LAYERS 0
 #endif
+#ifndef MOC_CHECK_LAYOUT
+#ifdef NDEBUG
+#define MOC_CHECK_LAYOUT 0
+#else
+#define MOC_CHECK_LAYOUT 1
+#endif
+#endif
 #ifndef MOC_RECORDER_ENABLE
 #define MOC_RECORDER_ENABLE 0
 #endif
@@ -88,8 +99,8 @@ extern "C++" {
 #define MOC_RECORDER_ENABLE_PLAYBACK 0
 #endif
 
-/* The switches as the template argument of Create. Bits 0 and 1: MOC_UpdateRule; 2: MOC_YAxis; 3: precise
- * coverage; 4: AVX2 at most; 5: statistics; 6: exceptions. */
+/* The switches as the template argument of Create. Bits 0 to 7: MOC_UpdateRule; 8: MOC_YAxis; 9: AVX2 at most;
+ * 10: statistics; 11: exceptions. */
 #if MOC_FOUR_LAYERS
 #define MOC_DETAIL_RULE 3u
 #elif !defined(QUICK_MASK)
@@ -102,28 +113,23 @@ extern "C++" {
 #if USE_D3D
 #define MOC_DETAIL_Y_AXIS 0u
 #else
-#define MOC_DETAIL_Y_AXIS 4u
-#endif
-#if PRECISE_COVERAGE
-#define MOC_DETAIL_PRECISE 8u
-#else
-#define MOC_DETAIL_PRECISE 0u
+#define MOC_DETAIL_Y_AXIS 256u
 #endif
 #ifndef USE_AVX512
 #define MOC_DETAIL_CAP 0u
 #elif USE_AVX512
 #define MOC_DETAIL_CAP 0u
 #else
-#define MOC_DETAIL_CAP 16u
+#define MOC_DETAIL_CAP 512u
 #endif
 #if ENABLE_STATS
-#define MOC_DETAIL_STATS 32u
+#define MOC_DETAIL_STATS 1024u
 #else
 #define MOC_DETAIL_STATS 0u
 #endif
 #define MOC_DETAIL_SWITCHES                                                                            \
-    (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_PRECISE | MOC_DETAIL_CAP | MOC_DETAIL_STATS |    \
-     (MOC_DETAIL_EXCEPTIONS ? 64u : 0u))
+    (MOC_DETAIL_RULE | MOC_DETAIL_Y_AXIS | MOC_DETAIL_CAP | MOC_DETAIL_STATS |                         \
+     (MOC_DETAIL_EXCEPTIONS ? 2048u : 0u))
 
 #include "moc_names.h"
 
@@ -363,7 +369,7 @@ public:
                                   ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
                                   const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
-        const MOC_VertexLayout layout = Layout(vtxLayout);
+        const MOC_VertexLayout layout = Layout(vtxLayout, modelToClipMatrix);
         int32_t result = MOC_VISIBLE;
         Direct([&] {
             return MOC_RenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout,
@@ -397,7 +403,7 @@ public:
                                 ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
                                 const VertexLayout &vtxLayout = VertexLayout(16, 4, 12)) const
     {
-        const MOC_VertexLayout layout = Layout(vtxLayout);
+        const MOC_VertexLayout layout = Layout(vtxLayout, modelToClipMatrix);
         int32_t result = MOC_VISIBLE;
         MOC_TestTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout, &result);
         return static_cast<CullingResult>(result);
@@ -414,7 +420,7 @@ public:
                       BackfaceWinding bfWinding = BACKFACE_CW, ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
                       const VertexLayout &vtxLayout = VertexLayout(16, 4, 12)) const
     {
-        const MOC_VertexLayout layout = Layout(vtxLayout);
+        const MOC_VertexLayout layout = Layout(vtxLayout, modelToClipMatrix);
         MOC_BinTriangles(this, inVtx, inTris, nTris, reinterpret_cast<MOC_TriList *>(triLists), nBinsW, nBinsH,
                          modelToClipMatrix, bfWinding, clipPlaneMask, &layout, nullptr);
     }
@@ -445,6 +451,7 @@ public:
     OcclusionCullingStatistics GetStatistics() const
     {
         MOC_Statistics s = {};
+        s.size = sizeof(s);
         MOC_GetStatistics(this, &s);
         OcclusionCullingStatistics stats;
         stats.mOccluders.mNumProcessedTriangles = s.occluders.num_processed_triangles;
@@ -482,7 +489,7 @@ public:
     static void TransformVertices(const float *mtx, const float *inVtx, float *xfVtx, unsigned int nVtx,
                                   const VertexLayout &vtxLayout = VertexLayout(12, 4, 8))
     {
-        const MOC_VertexLayout layout = Layout(vtxLayout);
+        const MOC_VertexLayout layout = Layout(vtxLayout, nullptr);
         MOC_TransformVertices(mtx, inVtx, xfVtx, nVtx, &layout);
     }
 
@@ -515,8 +522,8 @@ public:
                                const VertexLayout &vtxLayout = VertexLayout(16, 4, 12),
                                CullingResult cullingResult = static_cast<CullingResult>(MOC_RESULT_UNKNOWN)) const
     {
-        const MOC_VertexLayout layout = Layout(vtxLayout);
-        MOC_RecordRenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, clipPlaneMask, bfWinding, &layout,
+        const MOC_VertexLayout layout = Layout(vtxLayout, modelToClipMatrix);
+        MOC_RecordRenderTriangles(this, inVtx, inTris, nTris, modelToClipMatrix, bfWinding, clipPlaneMask, &layout,
                                   cullingResult);
     }
 
@@ -527,6 +534,8 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
+    friend class CullingThreadpool;
+
     /* A call that changes or copies the buffer: waits first for what a pool has in flight for it. */
     template <class Call>
     void Direct(Call call, const MaskedOcclusionCulling *const *others = nullptr, unsigned int count = 0) const
@@ -548,16 +557,16 @@ private:
         const bool stable = header >= 1000;
         if (stable ? library / 1000 != header / 1000 || library < header : library != header)
             return nullptr;
-        MOC_Settings settings;
+        MOC_Settings settings = {};
+        settings.size = sizeof(settings);
         MOC_DefaultSettings(&settings);
-        settings.implementation = (Switches & 16u) != 0 && implementation == AVX512 ? AVX2 : implementation;
-        settings.update_rule = static_cast<int32_t>(Switches & 3u);
-        settings.y_axis = (Switches & 4u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
-        settings.precise_coverage = (Switches & 8u) != 0 ? 1 : 0;
-        settings.statistics = (Switches & 32u) != 0 ? 1 : 0;
+        settings.implementation = (Switches & 512u) != 0 && implementation == AVX512 ? AVX2 : implementation;
+        settings.update_rule = static_cast<int32_t>(Switches & 255u);
+        settings.y_axis = (Switches & 256u) != 0 ? MOC_Y_AXIS_UP : MOC_Y_AXIS_DOWN;
+        settings.statistics = (Switches & 1024u) != 0 ? 1 : 0;
         settings.alloc = alignedAlloc;
         settings.free = alignedFree;
-        typedef MOC_DetailAllocation<(Switches & 64u) != 0> Allocation;
+        typedef MOC_DetailAllocation<(Switches & 2048u) != 0> Allocation;
         settings.call_alloc = Allocation::Caller();
         Allocation allocation;
         MaskedOcclusionCulling *moc = nullptr;
@@ -566,8 +575,14 @@ private:
         return moc;
     }
 
-    static MOC_VertexLayout Layout(const VertexLayout &layout)
+    static MOC_VertexLayout Layout(const VertexLayout &layout, const float *modelToClipMatrix)
     {
+#if MOC_CHECK_LAYOUT
+        assert((modelToClipMatrix == nullptr || layout.mStride != 16 || layout.mOffsetY != 4 || layout.mOffsetZ != 12) &&
+               "with a matrix the last offset of the vertex layout names z: x, y, z, w packed is VertexLayout(16, 4, 8)");
+#else
+        (void)modelToClipMatrix;
+#endif
         const MOC_VertexLayout plain = {layout.mStride, layout.mOffsetY, layout.mOffsetW};
         return plain;
     }
@@ -578,8 +593,7 @@ static_assert(sizeof(MaskedOcclusionCulling::TriList) == sizeof(MOC_TriList) &&
                   offsetof(MaskedOcclusionCulling::TriList, mPtr) == offsetof(MOC_TriList, data),
               "a TriList is passed to the C functions as it is");
 
-static_assert(sizeof(MaskedOcclusionCulling::OcclusionCullingStatistics) == 72 && sizeof(MOC_Statistics) == 72,
-              "programs copy the statistics by offset");
+static_assert(sizeof(MaskedOcclusionCulling::OcclusionCullingStatistics) == 72, "programs copy the statistics by offset");
 
 MOC_NAMESPACE_END
 

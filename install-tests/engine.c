@@ -12,7 +12,7 @@ int main(void) {
         -5, 5, 0, 5,
     };
     const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-    MOC_Settings settings;
+    MOC_Settings settings = {.size = sizeof settings};
     struct MaskedOcclusionCulling *moc = NULL;
     int32_t drawn, hidden, beside;
 

@@ -18,7 +18,7 @@
  *                   header was edited to 0.
  * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK says. That header does not know this one.
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
- * USE_D3D, PRECISE_COVERAGE, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them.
+ * USE_D3D, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them. PRECISE_COVERAGE does not matter: coverage is exact.
  *
  * GetImplementation returns SSE2 for what that header has no name for: scalar code, NEON and simd128.
  *
@@ -230,6 +230,7 @@ public:
     OcclusionCullingStatistics GetStatistics() override
     {
         MOC_Statistics s = {};
+        s.size = sizeof(s);
         MOC_GetStatistics(mObject, &s);
         OcclusionCullingStatistics stats;
         stats.mOccluders.mNumProcessedTriangles = s.occluders.num_processed_triangles;
@@ -304,12 +305,12 @@ MaskedOcclusionCulling *MaskedOcclusionCulling::Create(Implementation RequestedS
 {
     if (!moc_link::LibraryFits())
         return nullptr;
-    MOC_Settings settings;
+    MOC_Settings settings = {};
+    settings.size = sizeof(settings);
     MOC_DefaultSettings(&settings);
     settings.implementation = MOC_LINK_CAP && RequestedSIMD == AVX512 ? AVX2 : RequestedSIMD;
     settings.update_rule = UpdateRule();
     settings.y_axis = USE_D3D ? MOC_Y_AXIS_DOWN : MOC_Y_AXIS_UP;
-    settings.precise_coverage = PRECISE_COVERAGE ? 1 : 0;
     settings.statistics = ENABLE_STATS ? 1 : 0;
     settings.alloc = alignedAlloc;
     settings.free = alignedFree;

@@ -16,7 +16,7 @@ pub(crate) type CallAlloc =
     unsafe extern "C" fn(alloc: Option<AlignedAlloc>, alignment: usize, size: usize) -> *mut c_void;
 
 /// Where an object's memory comes from.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Allocator {
     callbacks: Option<(AlignedAlloc, AlignedFree)>,
     call_alloc: Option<CallAlloc>,

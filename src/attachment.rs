@@ -8,8 +8,8 @@
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
+use crate::CullingResult;
 use crate::source::Mesh;
-use crate::{CullingResult, Error};
 
 /// A pool as seen by its object.
 pub(crate) trait Pool: Send + Sync {
@@ -20,11 +20,15 @@ pub(crate) trait Pool: Send + Sync {
     fn forget(&self, attachment: &Attachment);
 
     /// Tests a rectangle against what has been drawn so far. `None`: its object is another one by now.
-    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<Result<CullingResult, Error>>;
+    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<CullingResult>;
 
     /// Tests a mesh against what has been drawn so far. `None`: its object is another one by now.
-    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>>;
+    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<CullingResult>;
 }
+
+/// The object belongs to another pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Taken;
 
 /// The pool of an object, if it has one.
 #[derive(Default)]
@@ -39,12 +43,6 @@ impl Attachment {
     #[inline(always)]
     pub fn is_busy(&self) -> bool {
         self.turns.load(Ordering::Acquire) % 2 == 1
-    }
-
-    /// Refuses an operation that would change or copy the buffer alongside the pool.
-    #[inline(always)]
-    pub fn check_idle(&self) -> Result<(), Error> {
-        if self.is_busy() { Err(Error::Busy) } else { Ok(()) }
     }
 
     /// The answer to a query of the buffer, unless the pool had work in flight meanwhile.
@@ -86,11 +84,11 @@ impl Attachment {
     /// Attaches the object to this pool.
     ///
     /// # Errors
-    /// [`Error::Busy`] if it belongs to another.
-    pub fn attach(&self, pool: Arc<dyn Pool>) -> Result<(), Error> {
+    /// [`Taken`] if it belongs to another.
+    pub fn attach(&self, pool: Arc<dyn Pool>) -> Result<(), Taken> {
         let mut slot = self.write();
         if slot.is_some() {
-            return Err(Error::Busy);
+            return Err(Taken);
         }
         *slot = Some(pool);
         Ok(())

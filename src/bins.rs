@@ -1,5 +1,6 @@
 //! Triangle lists: what `bin_triangles` fills and `render_trilist` draws.
 
+use core::fmt;
 use core::marker::PhantomData;
 
 /// Floats that a binned triangle takes: x, y in 1/256 pixel and 1/w, of three vertices.
@@ -18,6 +19,12 @@ pub struct TriList<'a> {
 unsafe impl Send for TriList<'_> {}
 // SAFETY: shared access only reads.
 unsafe impl Sync for TriList<'_> {}
+
+impl fmt::Debug for TriList<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TriList").field("capacity", &self.capacity).field("len", &self.len).finish_non_exhaustive()
+    }
+}
 
 impl<'a> TriList<'a> {
     /// An empty list that stores up to `storage.len() / 9` triangles.

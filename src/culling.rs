@@ -3,6 +3,7 @@
 mod recording;
 mod replay;
 
+use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::attachment::Attachment;
@@ -16,19 +17,28 @@ use crate::simd::Level;
 use crate::sink::{BinBounds, BinnedTriangles};
 use crate::source::Mesh;
 use crate::statistics::{Counters, Tally};
-use crate::vertices::VertexSource;
 use crate::{
     Allocator, ClipPlanes, CullingResult, DrawOptions, Error, Implementation, ScissorRect, Settings, Statistics,
     UpdateRule, Vertices, YAxis,
 };
+
+const NO_BUFFER: &str = "an object without a buffer is used by functions that check for it first";
 
 /// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
 ///
 /// Clip space is (x, y, w) with x to the right, y up and w away from the eye; depth is 1/w, 0 infinitely
 /// far, larger is nearer. An object may be sent between threads, and shared by threads that only query.
 ///
-/// While a [`CullingThreadpool`](crate::CullingThreadpool) is drawing into an object, calls that would change or copy its
-/// buffer are refused ([`Error::Busy`]). Queries are always answered, from what has been drawn so far.
+/// ```
+/// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, Vertices};
+///
+/// let mut culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
+/// let wall = [[-10.0, -10.0, 0.0, 10.0], [30.0, -10.0, 0.0, 10.0], [-10.0, 30.0, 0.0, 10.0]];
+/// culling.clear_buffer();
+/// culling.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
+/// assert_eq!(culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0), CullingResult::Occluded);
+/// # Ok::<(), masked_occlusion_culling::Error>(())
+/// ```
 pub struct MaskedOcclusionCulling {
     /// First, so that it is dropped first: dropping it draws what a pool still has in flight.
     attachment: Attachment,
@@ -44,15 +54,33 @@ pub struct MaskedOcclusionCulling {
     recorder: Recorder,
 }
 
-impl Default for MaskedOcclusionCulling {
-    fn default() -> Self {
-        Self::new(Settings::default())
+impl fmt::Debug for MaskedOcclusionCulling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("MaskedOcclusionCulling")
+            .field("implementation", &self.implementation())
+            .field("update_rule", &self.update_rule)
+            .field("y_axis", &self.y_axis)
+            .field("resolution", &self.size())
+            .field("near_clip_plane", &self.near_clip_plane())
+            .finish_non_exhaustive()
     }
 }
 
 impl MaskedOcclusionCulling {
-    /// An object without a buffer, on the best instruction set that the processor has and `settings` allow.
-    pub fn new(settings: Settings) -> Self {
+    /// An object with a clear buffer of `width` by `height` pixels, each from 1 to 16,384, on the best instruction set that the
+    /// processor has and `settings` allow.
+    ///
+    /// # Errors
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`].
+    pub fn new(width: u32, height: u32, settings: Settings) -> Result<Self, Error> {
+        let mut moc = Self::without_buffer(settings);
+        moc.set_resolution(width, height)?;
+        Ok(moc)
+    }
+
+    /// An object of the C interface, which gets its buffer later. Until then only calls that need no buffer may be made:
+    /// `capi` checks [`Self::has_buffer`] before all others.
+    pub(crate) fn without_buffer(settings: Settings) -> Self {
         Self {
             attachment: Attachment::default(),
             level: Level::capped(settings.implementation),
@@ -87,24 +115,31 @@ impl MaskedOcclusionCulling {
         self.allocator
     }
 
-    /// Allocates a buffer of `width` by `height` pixels, each from 1 to 16,384, and clears it.
+    /// Gives the object a clear buffer of `width` by `height` pixels, each from 1 to 16,384. The size that it has already is a
+    /// clear.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`], [`Error::OutOfMemory`], [`Error::Busy`]: the object keeps its buffer.
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps its buffer.
     pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {
-        self.attachment.check_idle()?;
         if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
             return Err(Error::InvalidSize);
         }
-        if self.resolution() != Some((width, height)) {
+        if self.size() != Some((width, height)) {
             self.buffer = Some(Buffer::new(width, height, self.update_rule, self.allocator, self.statistics)?);
-            self.recorder.changed(self.near_clip_plane(), self.resolution());
+            self.recorder.changed(self.near_clip_plane(), self.size());
         }
-        self.clear_buffer()
+        self.clear_buffer();
+        Ok(())
     }
 
-    /// Width and height in pixels, once set.
-    pub fn resolution(&self) -> Option<(u32, u32)> {
+    /// Width and height in pixels.
+    pub fn resolution(&self) -> (u32, u32) {
+        let buffer = self.buffer();
+        (buffer.width(), buffer.height())
+    }
+
+    /// The same, or nothing without a buffer.
+    fn size(&self) -> Option<(u32, u32)> {
         self.buffer.as_ref().map(|b| (b.width(), b.height()))
     }
 
@@ -113,9 +148,9 @@ impl MaskedOcclusionCulling {
     /// row of bins reach to the buffer's edge.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] for no bins, or bins narrower or lower than a tile.
+    /// [`Error::InvalidSize`] for no bins, or bins narrower or lower than a tile.
     pub fn compute_bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
-        self.buffer()?.bin_size(bins_w, bins_h)
+        self.buffer().bin_size(bins_w, bins_h)
     }
 
     /// Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
@@ -132,7 +167,7 @@ impl MaskedOcclusionCulling {
             return Err(Error::InvalidNumber);
         }
         if self.near.swap(near.to_bits(), Relaxed) != near.to_bits() {
-            self.recorder.changed(near, self.resolution());
+            self.recorder.changed(near, self.size());
         }
         Ok(())
     }
@@ -143,21 +178,16 @@ impl MaskedOcclusionCulling {
     }
 
     /// Sets every pixel infinitely far.
-    ///
-    /// # Errors
-    /// [`Error::NoBuffer`], [`Error::Busy`].
-    pub fn clear_buffer(&mut self) -> Result<(), Error> {
-        self.attachment.check_idle()?;
-        self.buffer.as_mut().ok_or(Error::NoBuffer)?.clear();
+    pub fn clear_buffer(&mut self) {
+        self.buffer.as_mut().expect(NO_BUFFER).clear();
         self.recorder.clear_buffer();
-        Ok(())
     }
 
     /// Folds `other` into this buffer: afterwards it hides what either hid, conservatively. The two may
     /// differ in instruction set and update rule.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`], [`Error::SizeMismatch`], [`Error::Busy`]; nothing is changed.
+    /// [`Error::SizeMismatch`]; nothing is changed.
     pub fn merge_buffer(&mut self, other: &Self) -> Result<(), Error> {
         self.merge_buffers(&[other])
     }
@@ -167,21 +197,18 @@ impl MaskedOcclusionCulling {
     /// # Errors
     /// As [`Self::merge_buffer`]: where one does not fit, none is folded.
     pub fn merge_buffers(&mut self, others: &[&Self]) -> Result<(), Error> {
-        self.attachment.check_idle()?;
         let theirs = self.mergeable(others)?;
         let level = self.level;
-        let mine = Region::whole(self.buffer.as_mut().ok_or(Error::NoBuffer)?);
-        // SAFETY: no pool draws into the others, which are borrowed.
-        unsafe { crate::buffer::merge::merge(level, mine, &theirs) };
+        // SAFETY: nobody draws into the others, which are borrowed.
+        unsafe { crate::buffer::merge::merge(level, self.region(), &theirs) };
         Ok(())
     }
 
     /// The buffers of others, if they can be folded into this one.
     pub(crate) fn mergeable<'o>(&self, others: &[&'o Self]) -> Result<Vec<&'o Buffer>, Error> {
-        let mine = self.buffer()?;
+        let mine = self.buffer();
         let fitting = |other: &&'o Self| {
-            other.attachment.check_idle()?;
-            let theirs = other.buffer()?;
+            let theirs = other.buffer();
             if (mine.width(), mine.height(), self.y_axis) != (theirs.width(), theirs.height(), other.y_axis) {
                 return Err(Error::SizeMismatch);
             }
@@ -196,36 +223,23 @@ impl MaskedOcclusionCulling {
     /// Triangles with a NaN or infinite coordinate are dropped and counted: an occluder less is safe.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `triangles` is not whole triangles;
-    /// [`Error::IndexOutOfRange`]; [`Error::Busy`]. Nothing is drawn.
+    /// [`Error::InvalidSize`] when `triangles` is not whole triangles; [`Error::IndexOutOfRange`]. Nothing is drawn.
     pub fn render_triangles(
         &mut self,
         vertices: Vertices<'_>,
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        self.check_mesh(&vertices, triangles)?;
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
+        let mesh = self.mesh(&vertices, triangles, options)?;
+        Ok(self.render_mesh(&mesh))
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
-    pub(crate) unsafe fn render_triangles_unchecked(
-        &mut self,
-        vertices: VertexSource,
-        triangles: &[u32],
-        options: &DrawOptions,
-    ) -> Result<CullingResult, Error> {
-        self.attachment.check_idle()?;
-        let camera = self.camera(options)?;
-        let region = Region::whole(self.buffer.as_mut().ok_or(Error::NoBuffer)?);
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
-        let (result, tally) = kernel::draw(self.level, region, &camera, &mesh);
+    pub(crate) fn render_mesh(&mut self, mesh: &Mesh<'_>) -> CullingResult {
+        let (level, camera) = (self.level, self.camera(mesh.options()));
+        let (result, tally) = kernel::draw(level, self.region(), &camera, mesh);
         self.counters.add_draw_alone(self.statistics, &tally);
-        self.recorder.render_triangles(Some(result), &mesh);
-        Ok(result)
+        self.recorder.render_triangles(Some(result), mesh);
+        result
     }
 
     /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the same
@@ -240,63 +254,51 @@ impl MaskedOcclusionCulling {
     /// holds the eye, for visible.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`], [`Error::InvalidSize`], [`Error::IndexOutOfRange`], as [`Self::render_triangles`].
+    /// [`Error::InvalidSize`], [`Error::IndexOutOfRange`], as [`Self::render_triangles`].
     pub fn test_triangles(
         &self,
         vertices: Vertices<'_>,
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        self.check_mesh(&vertices, triangles)?;
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.test_triangles_unchecked(vertices.source(), triangles, options) }
+        let mesh = self.mesh(&vertices, triangles, options)?;
+        Ok(self.test_mesh(&mesh))
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
-    pub(crate) unsafe fn test_triangles_unchecked(
-        &self,
-        vertices: VertexSource,
-        triangles: &[u32],
-        options: &DrawOptions,
-    ) -> Result<CullingResult, Error> {
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
-        if !self.recorder.is_on() {
-            if let Some(found) = self.attachment.undisturbed(|| self.look_at_triangles(&mesh)) {
-                let (result, tally) = found?;
-                self.counters.add_query(self.statistics, 0, &tally);
-                return Ok(result);
-            }
+    pub(crate) fn test_mesh(&self, mesh: &Mesh<'_>) -> CullingResult {
+        if !self.recorder.is_on()
+            && let Some((result, tally)) = self.attachment.undisturbed(|| self.look_at_triangles(mesh))
+        {
+            self.counters.add_query(self.statistics, 0, &tally);
+            return result;
         }
-        self.noted_triangles(&mesh)
+        self.noted_triangles(mesh)
     }
 
     /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
     #[cold]
-    fn noted_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+    fn noted_triangles(&self, mesh: &Mesh<'_>) -> CullingResult {
         // As in `noted_rect`.
         while let Some(pool) = self.attachment.pool() {
             if let Some(result) = pool.test_mesh(&self.attachment, mesh) {
                 return result;
             }
         }
-        let result = self.ask_triangles(mesh)?;
+        let result = self.ask_triangles(mesh);
         self.recorder.test_triangles(Some(result), mesh);
-        Ok(result)
+        result
     }
 
     /// The same, not recorded.
-    pub(crate) fn ask_triangles(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
-        let (result, tally) = self.look_at_triangles(mesh)?;
+    pub(crate) fn ask_triangles(&self, mesh: &Mesh<'_>) -> CullingResult {
+        let (result, tally) = self.look_at_triangles(mesh);
         self.counters.add_query(self.statistics, 0, &tally);
-        Ok(result)
+        result
     }
 
     /// The same without counting; also returns what to count.
-    fn look_at_triangles(&self, mesh: &Mesh<'_>) -> Result<(CullingResult, Tally), Error> {
-        let camera = self.camera(mesh.options())?;
-        Ok(kernel::test(self.level, self.buffer()?, &camera, mesh))
+    fn look_at_triangles(&self, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
+        kernel::test(self.level, self.buffer(), &self.camera(mesh.options()), mesh)
     }
 
     /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose
@@ -304,24 +306,14 @@ impl MaskedOcclusionCulling {
     ///
     /// `ViewCulled` when it lies off screen; `Visible` when a coordinate is NaN, `w_min` is not positive,
     /// or the rectangle is empty.
-    ///
-    /// # Errors
-    /// [`Error::NoBuffer`].
     #[inline(always)]
-    pub fn test_rect(
-        &self,
-        x_min: f32,
-        y_min: f32,
-        x_max: f32,
-        y_max: f32,
-        w_min: f32,
-    ) -> Result<CullingResult, Error> {
+    pub fn test_rect(&self, x_min: f32, y_min: f32, x_max: f32, y_max: f32, w_min: f32) -> CullingResult {
         // First, so that whoever does not record pays for nothing else: a small rectangle takes 10 ns.
         if self.recorder.is_on() {
             return self.noted_rect((x_min, y_min), (x_max, y_max), w_min);
         }
         match self.attachment.undisturbed(|| self.look_at_rect([x_min, y_min, x_max, y_max], w_min)) {
-            Some(found) => Ok(self.count_rect(found?)),
+            Some(found) => self.count_rect(found),
             None => self.noted_rect((x_min, y_min), (x_max, y_max), w_min),
         }
     }
@@ -329,7 +321,7 @@ impl MaskedOcclusionCulling {
     /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
     /// In pairs, which need no memory; see [`rectangle::test`].
     #[cold]
-    fn noted_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> Result<CullingResult, Error> {
+    fn noted_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> CullingResult {
         let edges = [min.0, min.1, max.0, max.1];
         // The pool may get another object meanwhile.
         while let Some(pool) = self.attachment.pool() {
@@ -337,21 +329,21 @@ impl MaskedOcclusionCulling {
                 return result;
             }
         }
-        let result = self.ask_rect(edges, w_min)?;
+        let result = self.ask_rect(edges, w_min);
         self.recorder.test_rect(Some(result), edges, w_min);
-        Ok(result)
+        result
     }
 
     /// The same, not recorded.
     #[inline(always)]
-    pub(crate) fn ask_rect(&self, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
-        Ok(self.count_rect(self.look_at_rect(edges, w_min)?))
+    pub(crate) fn ask_rect(&self, edges: [f32; 4], w_min: f32) -> CullingResult {
+        self.count_rect(self.look_at_rect(edges, w_min))
     }
 
     /// The same without counting; also returns what to count.
     #[inline(always)]
-    fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> Result<(CullingResult, u64), Error> {
-        Ok(rectangle::test(self.level, self.buffer()?, self.y_axis, edges, w_min))
+    fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> (CullingResult, u64) {
+        rectangle::test(self.level, self.buffer(), self.y_axis, edges, w_min)
     }
 
     #[inline(always)]
@@ -361,8 +353,8 @@ impl MaskedOcclusionCulling {
     }
 
     /// The tiles that a rectangle touches; at least one.
-    pub(crate) fn rectangle_tiles(&self, [x_min, y_min, x_max, y_max]: [f32; 4]) -> Result<TileRect, Error> {
-        Ok(rectangle::tiles(self.buffer()?, self.y_axis, [x_min, y_min, x_max, y_max]))
+    pub(crate) fn rectangle_tiles(&self, [x_min, y_min, x_max, y_max]: [f32; 4]) -> TileRect {
+        rectangle::tiles(self.buffer(), self.y_axis, [x_min, y_min, x_max, y_max])
     }
 
     /// Projects triangles and appends each that may be drawn to the list of every bin that it reaches;
@@ -381,32 +373,25 @@ impl MaskedOcclusionCulling {
         bins_h: u32,
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        self.check_mesh(&vertices, triangles)?;
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.bin_triangles_unchecked(vertices.source(), triangles, lists, bins_w, bins_h, options) }
+        let mesh = self.mesh(&vertices, triangles, options)?;
+        self.bin_mesh(&mesh, lists, bins_w, bins_h)
     }
 
-    /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
-    pub(crate) unsafe fn bin_triangles_unchecked(
+    pub(crate) fn bin_mesh(
         &self,
-        vertices: VertexSource,
-        triangles: &[u32],
+        mesh: &Mesh<'_>,
         lists: &mut [TriList<'_>],
         bins_w: u32,
         bins_h: u32,
-        options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        let buffer = self.buffer()?;
+        let buffer = self.buffer();
         let bin_size = buffer.bin_size(bins_w, bins_h)?;
         if lists.len() as u64 != u64::from(bins_w) * u64::from(bins_h) {
             return Err(Error::InvalidSize);
         }
-        let camera = self.camera(options)?;
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
+        let camera = self.camera(mesh.options());
         let (result, tally, full) =
-            kernel::bin_to_lists(self.level, buffer, &camera, &mesh, lists, bin_size, (bins_w, bins_h));
+            kernel::bin_to_lists(self.level, buffer, &camera, mesh, lists, bin_size, (bins_w, bins_h));
         self.counters.add_draw(self.statistics, &tally);
         if full { Err(Error::ListFull) } else { Ok(result) }
     }
@@ -414,7 +399,7 @@ impl MaskedOcclusionCulling {
     /// Draws a list inside `scissor`, or everywhere.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`], [`Error::Busy`]; [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or
+    /// [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or
     /// ending at the buffer's edge), or that extends beyond the buffer's last tile.
     pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
         // SAFETY: `&mut self` keeps every other user of the buffer away.
@@ -430,8 +415,7 @@ impl MaskedOcclusionCulling {
     /// While it runs, no other thread draws into an overlapping rectangle, and none queries, merges,
     /// clears or reads the buffer.
     pub unsafe fn render_trilist_shared(&self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
-        self.attachment.check_idle()?;
-        let buffer = self.buffer()?;
+        let buffer = self.buffer();
         let scissor = buffer.scissor_tiles(scissor)?;
         // SAFETY: the caller's contract: nobody else uses the rectangle. The coarse level is left as it is.
         let region = unsafe { Region::new(buffer, scissor, None) };
@@ -447,13 +431,12 @@ impl MaskedOcclusionCulling {
         near: f32,
         (bounds, prefilter): (&BinBounds, bool),
         binned: &mut BinnedTriangles,
-    ) -> Result<(), Error> {
-        let camera = self.camera_at(mesh.options(), near)?;
+    ) {
+        let camera = self.camera_at(mesh.options(), near);
         // Statistics count hidden triangles, too.
         let prefilter = prefilter && !self.statistics;
-        let tally = kernel::bin(self.level, self.buffer()?, &camera, mesh, (bounds, prefilter), binned);
+        let tally = kernel::bin(self.level, self.buffer(), &camera, mesh, (bounds, prefilter), binned);
         self.counters.add_draw(self.statistics, &tally);
-        Ok(())
     }
 
     /// Draws binned triangles into a region of this object's buffer; see [`kernel::draw_binned`].
@@ -475,15 +458,9 @@ impl MaskedOcclusionCulling {
     /// was drawn. `flip_y` writes the last row first.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; [`Error::InvalidSize`] when `depth` is shorter than the buffer; [`Error::Busy`].
+    /// [`Error::InvalidSize`] when `depth` is shorter than the buffer.
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
-        self.attachment.check_idle()?;
-        self.write_pixels(depth, flip_y)
-    }
-
-    /// The same, when nothing is being drawn.
-    pub(crate) fn write_pixels(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
-        let buffer = self.buffer()?;
+        let buffer = self.buffer();
         let pixels = buffer.width() as usize * buffer.height() as usize;
         let depth = depth.get_mut(..pixels).ok_or(Error::InvalidSize)?;
         crate::buffer::pixels::write(buffer, depth, flip_y);
@@ -495,9 +472,9 @@ impl MaskedOcclusionCulling {
         self.counters.snapshot()
     }
 
-    /// Waits until the pool that draws into the object, if any, has drawn everything submitted to it. The object may then be
-    /// used directly until the next call of the pool.
-    pub fn flush(&self) {
+    /// Waits until the pool that draws into the object, if any, has drawn everything submitted to it: of use to C, whose pools
+    /// draw into objects that the program holds.
+    pub(crate) fn flush(&self) {
         if let Some(pool) = self.attachment.pool() {
             pool.flush();
         }
@@ -511,26 +488,46 @@ impl MaskedOcclusionCulling {
         &self.recorder
     }
 
-    pub(crate) fn buffer(&self) -> Result<&Buffer, Error> {
-        self.buffer.as_ref().ok_or(Error::NoBuffer)
+    /// Only an object of the C interface can be without.
+    pub(crate) fn has_buffer(&self) -> bool {
+        self.buffer.is_some()
     }
 
-    fn camera(&self, options: &DrawOptions) -> Result<Camera, Error> {
+    /// # Panics
+    /// Without a buffer.
+    #[inline(always)]
+    pub(crate) fn buffer(&self) -> &Buffer {
+        self.buffer.as_ref().expect(NO_BUFFER)
+    }
+
+    /// All of the buffer, for drawing.
+    fn region(&mut self) -> Region<'_> {
+        Region::whole(self.buffer.as_mut().expect(NO_BUFFER))
+    }
+
+    fn camera(&self, options: &DrawOptions) -> Camera {
         self.camera_at(options, self.near_clip_plane())
     }
 
-    fn camera_at(&self, options: &DrawOptions, near: f32) -> Result<Camera, Error> {
+    fn camera_at(&self, options: &DrawOptions, near: f32) -> Camera {
         let near = if options.clip_planes.contains(ClipPlanes::NEAR) { near } else { 0.0 };
-        let buffer = self.buffer()?;
-        Ok(Camera::new(buffer.width(), buffer.height(), self.y_axis, near))
+        let buffer = self.buffer();
+        Camera::new(buffer.width(), buffer.height(), self.y_axis, near)
     }
 
-    pub(crate) fn check_mesh(&self, vertices: &Vertices<'_>, triangles: &[u32]) -> Result<(), Error> {
-        self.buffer()?;
+    /// A mesh whose indices are checked.
+    pub(crate) fn mesh<'a>(
+        &self,
+        vertices: &'a Vertices<'_>,
+        triangles: &'a [u32],
+        options: &'a DrawOptions,
+    ) -> Result<Mesh<'a>, Error> {
         if !triangles.len().is_multiple_of(3) {
             return Err(Error::InvalidSize);
         }
-        self.check_indices(triangles, vertices.len())
+        self.check_indices(triangles, vertices.len())?;
+        // SAFETY: every index names a vertex of the slice.
+        Ok(unsafe { Mesh::new(vertices.source(), vertices.matrix(), triangles, options) })
     }
 
     /// Is every index below `count`?

@@ -12,21 +12,46 @@
 //! Coverage is exact: vertices are snapped to 1/256 pixel, and a pixel is covered when its centre is, by the top-left
 //! rule. Every instruction set (see [`Implementation`]) gives the same bits.
 //!
-//! `src/kernel.rs` describes the way of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the vector layer. The C interface is in [`capi`]; C and C++ include what is in `include/`.
-#![warn(missing_docs)]
+//! ```
+//! use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, Vertices};
+//!
+//! let mut culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
+//! // Each frame: clear, draw occluders, test occludees. A wall at distance 10, in clip space: x, y, z (not read), w.
+//! culling.clear_buffer();
+//! let wall = [[-10.0, -10.0, 0.0, 10.0], [30.0, -10.0, 0.0, 10.0], [-10.0, 30.0, 0.0, 10.0]];
+//! culling.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
+//! // A rectangle in normalised device coordinates, whose nearest point is at distance 12.
+//! assert_eq!(culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0), CullingResult::Occluded);
+//! # Ok::<(), masked_occlusion_culling::Error>(())
+//! ```
+//!
+//! Meshes with a matrix are [`Vertices::model_space`]; a thread pool that draws is [`CullingThreadpool`]; recorded frames are
+//! [`Recording`].
+//!
+//! # Features
+//!
+//! - `capi` (default): the C functions (`capi`), which the headers in `include/` declare. Without it a Rust program exports none.
+//! - `glam` (default): `glam::Mat4` as a source of [`Matrix`]. Without it there are arrays.
+//!
+//! `src/kernel.rs` describes the way of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the vector layer.
+#![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
+// Some functions are for C alone.
+#![cfg_attr(not(feature = "capi"), allow(dead_code))]
 
 mod allocator;
 mod attachment;
 mod bins;
 mod bounds;
 mod buffer;
+#[cfg(feature = "capi")]
 pub mod capi;
 mod culling;
 mod error;
 mod float_environment;
 mod geometry;
 mod kernel;
+mod matrix;
 mod pool;
 mod raster;
 mod recorder;
@@ -39,22 +64,25 @@ mod transform;
 mod types;
 mod vertices;
 
-/// The matrices of [`DrawOptions`].
+/// The version of glam whose `Mat4` can be passed as a [`Matrix`].
+#[cfg(feature = "glam")]
 pub use glam;
 
 pub use allocator::Allocator;
 pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;
 pub use error::Error;
+pub use matrix::Matrix;
 pub use pool::{CullingThreadpool, Scope, ThreadStart, ThreadpoolSettings};
 pub use recorder::{RecordedCall, RecordedMesh, RecordedRect, Recording, RecordingError};
 pub use settings::{DrawOptions, Settings};
 pub use transform::transform_vertices;
+pub(crate) use types::VertexLayout;
 pub use types::{
     BackfaceWinding, ClipPlanes, CullingResult, Implementation, OccludeeStatistics, OccluderStatistics, ScissorRect,
-    Statistics, UpdateRule, VertexLayout, YAxis,
+    Statistics, UpdateRule, YAxis,
 };
-pub use vertices::Vertices;
+pub use vertices::{ClipSpaceLayout, ModelSpaceLayout, VertexSpace, Vertices};
 
 /// The README's program is tested.
 #[cfg(doctest)]

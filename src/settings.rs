@@ -1,11 +1,17 @@
 //! What objects are made with, and what draws and queries can be told.
 
-use glam::Mat4;
-
 use crate::{Allocator, BackfaceWinding, ClipPlanes, Implementation, UpdateRule, YAxis};
 
 /// What an object is made with; none of it changes afterwards.
-#[derive(Clone, Copy)]
+///
+/// ```
+/// use masked_occlusion_culling::{Settings, UpdateRule, YAxis};
+///
+/// let settings = Settings::default().with_update_rule(UpdateRule::Quick).with_y_axis(YAxis::Up);
+/// assert!(!settings.statistics);
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Settings {
     /// The highest instruction set that may be used.
     pub implementation: Implementation,
@@ -15,9 +21,37 @@ pub struct Settings {
     pub y_axis: YAxis,
     /// Where the buffer's memory comes from.
     pub allocator: Allocator,
-    /// Whether draws and queries are counted for [`MaskedOcclusionCulling::statistics`]: a tenth of the time of a draw. Dropped
+    /// Whether draws and queries are counted for
+    /// [`MaskedOcclusionCulling::statistics`](crate::MaskedOcclusionCulling::statistics): a tenth of the time of a draw. Dropped
     /// triangles are counted always.
     pub statistics: bool,
+}
+
+impl Settings {
+    /// These settings with another highest instruction set.
+    pub const fn with_implementation(self, implementation: Implementation) -> Self {
+        Self { implementation, ..self }
+    }
+
+    /// These settings with another update rule.
+    pub const fn with_update_rule(self, update_rule: UpdateRule) -> Self {
+        Self { update_rule, ..self }
+    }
+
+    /// These settings with another direction of rows.
+    pub const fn with_y_axis(self, y_axis: YAxis) -> Self {
+        Self { y_axis, ..self }
+    }
+
+    /// These settings with another allocator.
+    pub const fn with_allocator(self, allocator: Allocator) -> Self {
+        Self { allocator, ..self }
+    }
+
+    /// These settings with statistics counted or not.
+    pub const fn with_statistics(self, statistics: bool) -> Self {
+        Self { statistics, ..self }
+    }
 }
 
 impl Default for Settings {
@@ -33,10 +67,16 @@ impl Default for Settings {
 }
 
 /// How a mesh is drawn, tested or binned.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+///
+/// ```
+/// use masked_occlusion_culling::{BackfaceWinding, DrawOptions};
+///
+/// let both_sides = DrawOptions::new().with_winding(BackfaceWinding::None);
+/// assert_ne!(both_sides, DrawOptions::default());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct DrawOptions {
-    /// Takes vertices (x, y, z, 1) to clip space; without it they are clip space (x, y, w) already.
-    pub model_to_clip: Option<Mat4>,
     /// Which triangles face away.
     pub winding: BackfaceWinding,
     /// Which planes the mesh may cross; see [`ClipPlanes`].
@@ -44,8 +84,18 @@ pub struct DrawOptions {
 }
 
 impl DrawOptions {
-    /// The default options with a matrix.
-    pub fn with_matrix(model_to_clip: Mat4) -> Self {
-        Self { model_to_clip: Some(model_to_clip), ..Self::default() }
+    /// The default: clockwise triangles face away, all planes may be crossed.
+    pub const fn new() -> Self {
+        Self { winding: BackfaceWinding::Clockwise, clip_planes: ClipPlanes::ALL }
+    }
+
+    /// These options with another winding of triangles that face away.
+    pub const fn with_winding(self, winding: BackfaceWinding) -> Self {
+        Self { winding, ..self }
+    }
+
+    /// These options with other clip planes.
+    pub const fn with_clip_planes(self, clip_planes: ClipPlanes) -> Self {
+        Self { clip_planes, ..self }
     }
 }

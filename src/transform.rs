@@ -1,24 +1,33 @@
 //! Vertices to clip space, for callers that want them there.
 
-use glam::Mat4;
-
-use crate::Vertices;
 use crate::geometry::project::dot;
 use crate::simd::{self, Job, Level, MAX_LANES, Simd};
 use crate::source::VertexReader;
-use crate::vertices::VertexSource;
+use crate::vertices::{VertexSource, vertex_count};
+use crate::{Error, Matrix, ModelSpaceLayout};
 
-/// Transforms positions (x, y, z, 1) by `matrix` into packed clip-space x, y, z, w: as many as there are
-/// vertices or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
-pub fn transform_vertices(matrix: &Mat4, vertices: Vertices<'_>, out: &mut [[f32; 4]]) {
-    let count = vertices.len().min(out.len());
+/// Transforms the positions (x, y, z, 1) that lie in `data` as `layout` says by `matrix` into packed clip-space x, y, z, w: as many
+/// as there are positions or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
+///
+/// # Errors
+/// [`Error::InvalidLayout`] where the stride or an offset is negative: nothing is written.
+pub fn transform_vertices(
+    matrix: impl Into<Matrix>,
+    data: &[f32],
+    layout: ModelSpaceLayout,
+    out: &mut [[f32; 4]],
+) -> Result<(), Error> {
+    let layout = layout.into();
+    let count = vertex_count(size_of_val(data), layout)?.min(out.len());
+    let source = VertexSource { base: data.as_ptr().cast(), layout };
     // SAFETY: both slices have that many.
-    unsafe { transform_raw(matrix, vertices.source(), out.as_mut_ptr().cast(), count) }
+    unsafe { transform_raw(matrix.into().as_array(), source, out.as_mut_ptr().cast(), count) };
+    Ok(())
 }
 
 /// # Safety
 /// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
-pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
+pub(crate) unsafe fn transform_raw(matrix: &[f32; 16], source: VertexSource, out: *mut f32, count: usize) {
     // In parts whose vertices have numbers of 32 bits, as those that a mesh names.
     const PART: usize = 1 << 30;
     let mut done = 0;
@@ -32,7 +41,7 @@ pub(crate) unsafe fn transform_raw(matrix: &Mat4, source: VertexSource, out: *mu
 }
 
 struct Transform<'a> {
-    matrix: &'a Mat4,
+    matrix: &'a [f32; 16],
     source: VertexSource,
     out: *mut f32,
     count: usize,
@@ -53,8 +62,7 @@ impl Job for Transform<'_> {
 /// # Safety
 /// The vertices can be read and `out` can be written for four floats each; either may be unaligned.
 #[inline(always)]
-unsafe fn transform<S: Simd>(s: S, matrix: &Mat4, source: VertexSource, out: *mut f32, count: usize) {
-    let m = matrix.to_cols_array();
+unsafe fn transform<S: Simd>(s: S, m: &[f32; 16], source: VertexSource, out: *mut f32, count: usize) {
     let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
     let rows = [row(0), row(1), row(2), row(3)];
     let reader = VertexReader::new(s, source, None);

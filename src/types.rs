@@ -4,6 +4,7 @@
 /// An instruction set that the kernel is compiled for. All of them give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
+#[non_exhaustive]
 pub enum Implementation {
     /// No vector instructions by name: runs anywhere.
     Scalar = -1,
@@ -24,6 +25,7 @@ pub enum Implementation {
 /// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(i32)]
+#[non_exhaustive]
 pub enum UpdateRule {
     /// One reference depth and two working layers (20 bytes a sub-tile): accurate in nearly any scene and order.
     #[default]
@@ -142,13 +144,9 @@ impl core::ops::BitOr for ClipPlanes {
     }
 }
 
-/// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes from the vertex's x.
-///
-/// Packed `x, y, z, w` is `(16, 4, 12)` without a matrix and `(16, 4, 8)` with one; packed `x, y, z`
-/// with a matrix is `(12, 4, 8)`; a structure of arrays of `n` is `(4, 4 * n, 8 * n)`.
+/// A layout in the form of C and of the kernel, where what else is known says which coordinate the last offset names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(C)]
-pub struct VertexLayout {
+pub(crate) struct VertexLayout {
     /// Bytes from one vertex to the next; not negative.
     pub stride: i32,
     /// Bytes from x to y.
@@ -158,9 +156,9 @@ pub struct VertexLayout {
 }
 
 impl VertexLayout {
-    /// Clip-space `x, y, z, w`, 16 bytes a vertex. The default.
+    /// Clip-space `x, y, z, w`, 16 bytes per vertex.
     pub const CLIP_SPACE: Self = Self::new(16, 4, 12);
-    /// Model-space `x, y, z`, 12 bytes a vertex, to be used with a matrix.
+    /// Model-space `x, y, z`, 12 bytes per vertex, to be used with a matrix.
     pub const POSITIONS: Self = Self::new(12, 4, 8);
 
     /// A layout from its stride and offsets in bytes.
@@ -169,17 +167,10 @@ impl VertexLayout {
     }
 }
 
-impl Default for VertexLayout {
-    fn default() -> Self {
-        Self::CLIP_SPACE
-    }
-}
-
 /// A rectangle of pixels: `min` inside, `max` outside. x in multiples of 32, y of 8; a `max` may also
 /// be the width or height of the buffer, as it is or rounded up to whole tiles. Rows are counted in
 /// the object's y direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(C)]
 pub struct ScissorRect {
     /// First column.
     pub min_x: i32,
@@ -193,7 +184,7 @@ pub struct ScissorRect {
 
 /// Counts of what draws did since the object was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(C)]
+#[non_exhaustive]
 pub struct OccluderStatistics {
     /// Triangles submitted to `render_triangles` and `bin_triangles`, and those of drawn lists.
     pub num_processed_triangles: i64,
@@ -212,7 +203,7 @@ pub struct OccluderStatistics {
 
 /// Counts of what queries did since the object was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(C)]
+#[non_exhaustive]
 pub struct OccludeeStatistics {
     /// Rectangles tested.
     pub num_processed_rectangles: i64,
@@ -227,7 +218,7 @@ pub struct OccludeeStatistics {
 /// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
 /// instruction set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(C)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Of draws.
     pub occluders: OccluderStatistics,

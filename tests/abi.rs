@@ -3,7 +3,7 @@
 //! stays true. `UPDATE_ABI=1 cargo test --test abi` adds what is new; what is there goes or changes by hand, with a
 //! new MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the differences with 32-bit ones (run by
 //! `.ci/i686`).
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 
@@ -41,8 +41,12 @@ fn of_the_library() -> List {
     let mut list = List::new();
     list.insert("MOC_ABI_VERSION".into(), Some(MOC_ABI_VERSION.into()));
     list.insert("MOC_RESULT_UNKNOWN".into(), Some(MOC_RESULT_UNKNOWN.into()));
+    list.insert("MOC_UNCHECKED".into(), Some(MOC_UNCHECKED.into()));
     structs! { list:
-        MOC_Settings { implementation update_rule y_axis precise_coverage statistics alloc free call_alloc }
+        MOC_Settings { size implementation update_rule y_axis statistics alloc free call_alloc }
+        MOC_Mesh {
+            size index_size vertices indices vertex_count triangle_count model_to_clip layout winding clip_planes
+        }
         MOC_ThreadpoolSettings {
             size threads bins_w bins_h max_jobs processors external_threads reserved thread_name thread_start user
         }
@@ -55,11 +59,9 @@ fn of_the_library() -> List {
         MOC_OccludeeStatistics {
             num_processed_rectangles num_processed_triangles num_rasterized_triangles num_tiles_traversed
         }
-        MOC_Statistics { occluders occludees }
-        MOC_RecordingInfo { near_clip_plane width height num_calls }
-        MOC_RecordedCall {
-            kind result rect vertices vertex_floats triangles n_triangles model_to_clip winding clip_planes layout
-        }
+        MOC_Statistics { size reserved occluders occludees }
+        MOC_RecordingInfo { size near_clip_plane width height num_calls }
+        MOC_RecordedCall { size kind result rect mesh vertex_floats }
     }
     enumerations! { list:
         MOC_Status {

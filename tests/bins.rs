@@ -2,10 +2,9 @@
 
 mod scenes;
 
-use glam::Mat4;
 use masked_occlusion_culling::{
-    DrawOptions, Implementation, MaskedOcclusionCulling, ScissorRect, Settings, TriList, UpdateRule, VertexLayout,
-    Vertices, YAxis,
+    ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, ModelSpaceLayout, ScissorRect, Settings,
+    TriList, UpdateRule, Vertices, YAxis,
 };
 use scenes::Scene;
 
@@ -13,12 +12,11 @@ const SIZE: (u32, u32) = (420, 235);
 const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 
 fn vertices(scene: &Scene) -> Vertices<'_> {
-    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
-    Vertices::new(scene.vertices.as_flattened(), layout).unwrap()
-}
-
-fn options(scene: &Scene) -> DrawOptions {
-    DrawOptions { model_to_clip: scene.matrix.as_ref().map(Mat4::from_cols_array), ..DrawOptions::default() }
+    let space = match scene.matrix {
+        Some(matrix) => ModelSpaceLayout::XYZ_PADDED.with_matrix(matrix),
+        None => ClipSpaceLayout::XYZW.into(),
+    };
+    Vertices::new(scene.vertices.as_flattened(), space).unwrap()
 }
 
 fn object(
@@ -27,8 +25,12 @@ fn object(
     update_rule: UpdateRule,
     y_axis: YAxis,
 ) -> MaskedOcclusionCulling {
-    let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, y_axis, ..Settings::default() });
-    moc.set_resolution(SIZE.0, SIZE.1).unwrap();
+    let mut moc = MaskedOcclusionCulling::new(
+        SIZE.0,
+        SIZE.1,
+        Settings::default().with_implementation(implementation).with_update_rule(update_rule).with_y_axis(y_axis),
+    )
+    .unwrap();
     moc.set_near_clip_plane(scene.near).unwrap();
     moc
 }
@@ -47,7 +49,7 @@ fn every(test: impl Fn(&Scene, MaskedOcclusionCulling, Vec<u32>, &str)) {
                 for axis in [YAxis::Down, YAxis::Up] {
                     let mut reference = object(&scene, implementation, rule, axis);
                     for indices in &scene.objects {
-                        reference.render_triangles(vertices(&scene), indices, &options(&scene)).unwrap();
+                        reference.render_triangles(vertices(&scene), indices, &DrawOptions::default()).unwrap();
                     }
                     let who = format!("{} {implementation:?} {rule:?} {axis:?}", scene.name);
                     test(&scene, object(&scene, implementation, rule, axis), bits(&reference), &who);
@@ -61,13 +63,13 @@ fn every(test: impl Fn(&Scene, MaskedOcclusionCulling, Vec<u32>, &str)) {
 fn one_call_or_many() {
     every(|scene, mut moc, want, who| {
         let all = scene.objects.concat();
-        moc.render_triangles(vertices(scene), &all, &options(scene)).unwrap();
+        moc.render_triangles(vertices(scene), &all, &DrawOptions::default()).unwrap();
         assert!(bits(&moc) == want, "{who}: one call for all objects");
-        moc.clear_buffer().unwrap();
+        moc.clear_buffer();
         let (mut rest, mut next) = (&all[..], [1, 2, 15, 16, 17, 100, 1023, 1025].into_iter().cycle());
         while !rest.is_empty() {
             let (now, later) = rest.split_at(rest.len().min(3 * next.next().unwrap_or(1)));
-            moc.render_triangles(vertices(scene), now, &options(scene)).unwrap();
+            moc.render_triangles(vertices(scene), now, &DrawOptions::default()).unwrap();
             rest = later;
         }
         assert!(bits(&moc) == want, "{who}: calls of many lengths");
@@ -90,7 +92,7 @@ fn binned<'a>(
 ) -> Vec<TriList<'a>> {
     let mut lists: Vec<_> = storage.iter_mut().map(|s| TriList::new(s)).collect();
     for indices in &scene.objects {
-        moc.bin_triangles(vertices(scene), indices, &mut lists, bins.0, bins.1, &options(scene)).unwrap();
+        moc.bin_triangles(vertices(scene), indices, &mut lists, bins.0, bins.1, &DrawOptions::default()).unwrap();
     }
     lists
 }
@@ -108,7 +110,7 @@ fn bins_one_by_one() {
             let mut storage = storage(scene, bins);
             let lists = binned(scene, &moc, bins, &mut storage);
             let bin_size = moc.compute_bin_size(bins.0, bins.1).unwrap();
-            moc.clear_buffer().unwrap();
+            moc.clear_buffer();
             // In an order that no drawing has: bins do not depend on each other.
             for i in (0..lists.len()).rev() {
                 moc.render_trilist(&lists[i], Some(scissor(i as u32, bins, bin_size))).unwrap();
@@ -123,7 +125,7 @@ fn one_list_without_a_scissor() {
     every(|scene, mut moc, want, who| {
         let mut storage = storage(scene, (1, 1));
         let lists = binned(scene, &moc, (1, 1), &mut storage);
-        moc.clear_buffer().unwrap();
+        moc.clear_buffer();
         moc.render_trilist(&lists[0], None).unwrap();
         assert!(bits(&moc) == want, "{who}");
     });
@@ -137,7 +139,7 @@ fn bins_on_several_threads() {
         let mut storage = storage(scene, bins);
         let lists = binned(scene, &moc, bins, &mut storage);
         let bin_size = moc.compute_bin_size(bins.0, bins.1).unwrap();
-        moc.clear_buffer().unwrap();
+        moc.clear_buffer();
         std::thread::scope(|scope| {
             for thread in 0..THREADS {
                 let (moc, lists) = (&moc, &lists);

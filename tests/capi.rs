@@ -1,6 +1,6 @@
 //! Compiles the programs of `capi-tests` with the machine's C and C++ compilers, as a user of the library
 //! would, and runs them against the shared and the static library.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "capi"))]
 
 mod native;
 
@@ -143,6 +143,21 @@ programs! {
     throwing_allocator_static: THROWING_ALLOCATOR, Library::Static;
     threads_shared: THREADS, Library::Shared;
     threads_static: THREADS, Library::Static;
+}
+
+/// Each call in a process of its own, which its assertion is to stop.
+#[test]
+fn layout_check() {
+    const PROGRAM: Program = Program { name: "layout_check", sources: &["layout_check.cpp"], cpp: true };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let executable = build(&PROGRAM, Library::Shared, &[], folder.path()).expect("no flags to refuse");
+    for which in -1..6 {
+        let mut command = native::target().command(executable.clone());
+        let output = command.arg(which.to_string()).current_dir(folder.path()).output().expect("the program starts");
+        succeed(&format!("layout_check {which}"), &output);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(said.contains("x, y, z, w packed is VertexLayout(16, 4, 8)"), which >= 0, "{which}: {said}");
+    }
 }
 
 /// Only 32-bit programs compute in the x87 unit.

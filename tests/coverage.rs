@@ -29,7 +29,7 @@ fn compare(
     oracle: &Oracle,
     depth: &mut Vec<f32>,
 ) -> Result<(), String> {
-    moc.clear_buffer().unwrap();
+    moc.clear_buffer();
     draw(moc, &[*t]);
     read(moc, depth);
     compare_one(t, depth, oracle).map_err(|why| {

@@ -1,5 +1,6 @@
 //! The programs of cpp-examples compile without a warning, run, and say what they should, with the library linked in
 //! either way.
+#![cfg(feature = "capi")]
 
 mod native;
 

@@ -31,9 +31,9 @@ fn d01_rect_off_screen_is_view_culled() {
             [1e30, 1e30, 2e30, 2e30],
             [-3e38, -3e38, -2e38, -2e38],
         ] {
-            assert_eq!(moc.test_rect(x0, y0, x1, y1, 1.0), Ok(ViewCulled), "{} {x0} {y0} {x1} {y1}", name(&moc));
+            assert_eq!(moc.test_rect(x0, y0, x1, y1, 1.0), ViewCulled, "{} {x0} {y0} {x1} {y1}", name(&moc));
         }
-        assert_eq!(moc.test_rect(0.9, -0.5, 1.5, 0.5, 1.0), Ok(Visible), "{}", name(&moc));
+        assert_eq!(moc.test_rect(0.9, -0.5, 1.5, 0.5, 1.0), Visible, "{}", name(&moc));
     });
 }
 
@@ -41,10 +41,10 @@ fn d01_rect_off_screen_is_view_culled() {
 fn d02_rect_with_a_huge_or_infinite_edge_is_visible() {
     every((1920, 1080), |moc| {
         for edge in [2.3e6, 1e10, f32::MAX, f32::INFINITY] {
-            assert_eq!(moc.test_rect(0.0, -1.0, edge, 1.0, 1.0), Ok(Visible), "{} {edge}", name(&moc));
-            assert_eq!(moc.test_rect(-edge, -1.0, 0.0, 1.0, 1.0), Ok(Visible), "{} {edge}", name(&moc));
-            assert_eq!(moc.test_rect(-edge, -edge, edge, edge, 1.0), Ok(Visible), "{} {edge}", name(&moc));
-            assert_eq!(moc.test_rect(-1.0, 0.0, 1.0, edge, 1.0), Ok(Visible), "{} {edge}", name(&moc));
+            assert_eq!(moc.test_rect(0.0, -1.0, edge, 1.0, 1.0), Visible, "{} {edge}", name(&moc));
+            assert_eq!(moc.test_rect(-edge, -1.0, 0.0, 1.0, 1.0), Visible, "{} {edge}", name(&moc));
+            assert_eq!(moc.test_rect(-edge, -edge, edge, edge, 1.0), Visible, "{} {edge}", name(&moc));
+            assert_eq!(moc.test_rect(-1.0, 0.0, 1.0, edge, 1.0), Visible, "{} {edge}", name(&moc));
         }
     });
 }
@@ -54,9 +54,9 @@ fn d02_a_huge_rect_behind_a_wall_is_still_occluded() {
     every((200, 100), |mut moc| {
         draw_clip(&mut moc, &wall(2.0));
         let m = f32::MAX;
-        assert_eq!(moc.test_rect(-m, -m, m, m, 4.0), Ok(Occluded), "{}", name(&moc));
+        assert_eq!(moc.test_rect(-m, -m, m, m, 4.0), Occluded, "{}", name(&moc));
         let inf = f32::INFINITY;
-        assert_eq!(moc.test_rect(-inf, -inf, inf, inf, 4.0), Ok(Occluded), "{}", name(&moc));
+        assert_eq!(moc.test_rect(-inf, -inf, inf, inf, 4.0), Occluded, "{}", name(&moc));
     });
 }
 
@@ -68,13 +68,13 @@ fn d03_rect_at_or_behind_the_eye_or_nan_is_visible() {
                 draw_clip(&mut moc, &wall(1e-3));
             }
             for w in [0.0, -0.0, -1.0, f32::NEG_INFINITY, f32::NAN, -f32::MIN_POSITIVE] {
-                assert_eq!(moc.test_rect(-0.5, -0.5, 0.5, 0.5, w), Ok(Visible), "{} w {w}", name(&moc));
+                assert_eq!(moc.test_rect(-0.5, -0.5, 0.5, 0.5, w), Visible, "{} w {w}", name(&moc));
             }
             for k in 0..4 {
                 let mut edges = [-0.5, -0.5, 0.5, 0.5];
                 edges[k] = f32::NAN;
                 let [x0, y0, x1, y1] = edges;
-                assert_eq!(moc.test_rect(x0, y0, x1, y1, 1.0), Ok(Visible), "{} {edges:?}", name(&moc));
+                assert_eq!(moc.test_rect(x0, y0, x1, y1, 1.0), Visible, "{} {edges:?}", name(&moc));
             }
         }
     });
@@ -131,14 +131,14 @@ fn d05_nan_and_infinite_vertices_are_dropped_and_counted() {
             }
             let who = name(&moc);
             assert!(depth(&moc).iter().all(|d| *d < 0.0), "{who} {bad}: something was drawn");
-            assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Ok(Visible), "{who} {bad}");
+            assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Visible, "{who} {bad}");
             assert_eq!(moc.statistics().occluders.num_dropped_triangles, drawn, "{who} {bad}");
             // The good triangles of the same call are drawn.
             let mut mesh = [wall(1.0); 2].concat();
             mesh[0][0] = bad;
             draw_clip(&mut moc, &mesh);
             assert!(depth(&moc).iter().all(|d| *d > 0.0), "{who} {bad}: the good triangle is missing");
-            assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Ok(Occluded), "{who} {bad}");
+            assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Occluded, "{who} {bad}");
             // As an occludee it may be anywhere.
             assert_eq!(test_clip(&moc, &mesh[..3]), Visible, "{who} {bad}");
         });
@@ -199,7 +199,7 @@ fn d07_triangles_that_leave_the_screen_keep_their_edges() {
         // One instruction set a case: the others are compared with each other elsewhere.
         let which = case % objects.len();
         let moc = &mut objects[which];
-        moc.clear_buffer().unwrap();
+        moc.clear_buffer();
         support::draw(moc, &[t]);
         support::read(moc, &mut depth);
         if let Err(why) = support::compare_one(&t, &depth, &exact) {
@@ -222,7 +222,7 @@ fn d08_extreme_magnitudes_neither_crash_nor_come_too_near() {
                     };
                     [number(), number(), number(), number()]
                 });
-                moc.clear_buffer().unwrap();
+                moc.clear_buffer();
                 draw_clip(&mut moc, &t);
                 test_clip(&moc, &t);
                 // No point of a triangle in view is nearer than its nearest corner, if all lie in front.
@@ -243,7 +243,7 @@ fn d09_merging_is_never_nearer_than_the_truth() {
         for _ in 0..150 {
             let mut exact = oracle::Oracle::new(size.0, size.1);
             let mut other = object(moc.implementation(), moc.update_rule(), YAxis::Down, size);
-            moc.clear_buffer().unwrap();
+            moc.clear_buffer();
             for target in [&mut moc, &mut other] {
                 for _ in 0..6 {
                     let t = [(); 3].map(|()| {
@@ -270,9 +270,9 @@ fn d09_merging_hides_what_either_hid() {
         let mut other = object(moc.implementation(), moc.update_rule(), YAxis::Down, (256, 128));
         draw_clip(&mut moc, &half(-1.0));
         draw_clip(&mut other, &half(1.0));
-        assert_eq!(moc.test_rect(-0.9, -0.9, 0.9, 0.9, 2.0), Ok(Visible), "{}", name(&moc));
+        assert_eq!(moc.test_rect(-0.9, -0.9, 0.9, 0.9, 2.0), Visible, "{}", name(&moc));
         moc.merge_buffer(&other).unwrap();
-        assert_eq!(moc.test_rect(-0.9, -0.9, 0.9, 0.9, 2.0), Ok(Occluded), "{}", name(&moc));
+        assert_eq!(moc.test_rect(-0.9, -0.9, 0.9, 0.9, 2.0), Occluded, "{}", name(&moc));
     });
 }
 
@@ -288,7 +288,6 @@ fn d10_buffers_of_other_sizes_are_refused_and_nothing_changes() {
         }
         let other = object(moc.implementation(), moc.update_rule(), YAxis::Up, (64, 64));
         assert_eq!(moc.merge_buffer(&other), Err(Error::SizeMismatch), "{}", name(&moc));
-        assert_eq!(moc.merge_buffer(&MaskedOcclusionCulling::default()), Err(Error::NoBuffer), "{}", name(&moc));
         assert_eq!(bits(&moc), before, "{}", name(&moc));
     });
 }
@@ -300,15 +299,9 @@ fn d10_buffers_of_other_instruction_sets_and_rules_merge() {
             for rule in RULES {
                 let mut other = object(implementation, rule, YAxis::Down, (100, 50));
                 draw_clip(&mut other, &wall(1.0));
-                moc.clear_buffer().unwrap();
+                moc.clear_buffer();
                 moc.merge_buffer(&other).unwrap();
-                assert_eq!(
-                    moc.test_rect(-1.0, -1.0, 1.0, 1.0, 2.0),
-                    Ok(Occluded),
-                    "{} from {}",
-                    name(&moc),
-                    name(&other)
-                );
+                assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 2.0), Occluded, "{} from {}", name(&moc), name(&other));
             }
         }
     });
@@ -322,7 +315,7 @@ fn d11_full_lists_take_no_more_and_say_so() {
         let mesh = [wall(1.0); 8].concat();
         let indices: Vec<u32> = (0..24).collect();
         let mut lists = [TriList::new(&mut storage[..9 * 5])];
-        let vertices = Vertices::from_clip_space(&mesh);
+        let vertices = Vertices::clip_space(&mesh);
         let result = moc.bin_triangles(vertices, &indices, &mut lists, 1, 1, &both_sides());
         assert_eq!(result, Err(Error::ListFull), "{}", name(&moc));
         assert_eq!((lists[0].len(), lists[0].capacity()), (5, 5), "{}", name(&moc));
@@ -337,7 +330,7 @@ fn d11_full_lists_take_no_more_and_say_so() {
 fn d11_bad_bin_counts_are_errors() {
     every((256, 128), |moc| {
         let mesh = wall(1.0);
-        let vertices = Vertices::from_clip_space(&mesh);
+        let vertices = Vertices::clip_space(&mesh);
         // None, narrower than a tile, lower than a tile, and not as many as there are lists.
         for (w, h) in [(0, 1), (1, 0), (0, 0), (9, 1), (1, 17), (u32::MAX, 1), (u32::MAX, u32::MAX), (65536, 65537)] {
             let mut storage = [0.0; 9];

@@ -1,5 +1,5 @@
 //! The shared library exports the functions of the header and nothing else.
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 

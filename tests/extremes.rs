@@ -14,17 +14,11 @@ fn any_size(random: &mut fastrand::Rng, limit: f32) -> f32 {
 }
 
 fn object(rule: UpdateRule, width: u32, height: u32) -> MaskedOcclusionCulling {
-    let settings = Settings { implementation: Implementation::Avx512, update_rule: rule, ..Settings::default() };
-    let mut moc = MaskedOcclusionCulling::new(settings);
-    moc.set_resolution(width, height).unwrap();
-    moc
+    let settings = Settings::default().with_implementation(Implementation::Avx512).with_update_rule(rule);
+    MaskedOcclusionCulling::new(width, height, settings).unwrap()
 }
 
-const BOTH_SIDES: DrawOptions = DrawOptions {
-    model_to_clip: None,
-    winding: BackfaceWinding::None,
-    clip_planes: masked_occlusion_culling::ClipPlanes::ALL,
-};
+const BOTH_SIDES: DrawOptions = DrawOptions::new().with_winding(BackfaceWinding::None);
 
 /// Nothing in front of the near plane is ever stored, least of all something infinitely near, which hides everything.
 #[test]
@@ -47,8 +41,8 @@ fn no_depth_is_nearer_than_the_near_plane() {
             for _ in 0..4000 {
                 let triangle: [[f32; 4]; 3] =
                     core::array::from_fn(|_| core::array::from_fn(|_| any_size(&mut random, limit)));
-                moc.clear_buffer().unwrap();
-                moc.render_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+                moc.clear_buffer();
+                moc.render_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
                 moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
                 drawn += usize::from(depth.iter().any(|&d| d > 0.0));
                 assert!(depth.iter().all(|&d| d <= nearest), "{triangle:?}");
@@ -75,7 +69,7 @@ fn an_empty_buffer_never_answers_occluded() {
                     core::array::from_fn(|_| any_size(&mut random, 6.0))
                 }
             });
-            let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+            let answer = moc.test_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
             assert_ne!(answer, CullingResult::Occluded, "{width}x{height} {triangle:?}");
             culled += usize::from(answer == CullingResult::ViewCulled);
         }
@@ -88,7 +82,7 @@ fn an_empty_buffer_never_answers_occluded() {
 fn a_triangle_that_passes_by_the_only_pixel_is_view_culled() {
     let moc = object(UpdateRule::ThreeLayer, 1, 1);
     let triangle = [[4.0, -9.0, 0.0, 1.0], [5.0, -3.0, 0.0, 1.0], [-8.0, 1.0, 0.0, 1.0]];
-    let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
+    let answer = moc.test_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
     assert_eq!(answer, Ok(CullingResult::ViewCulled));
 }
 
@@ -103,7 +97,7 @@ fn a_triangle_with_far_corners_is_seen_at_the_corner_of_the_screen() {
         [120.40197, 213.67404, 0.0, 1.2955712],
     ];
     let options = DrawOptions::default();
-    let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &options);
+    let answer = moc.test_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &options);
     assert_eq!(answer, Ok(CullingResult::Visible));
 }
 
@@ -114,9 +108,9 @@ fn what_is_not_finite_is_outside_of_nothing() {
     for bad in [f32::INFINITY, f32::NAN, f32::NEG_INFINITY] {
         let triangle = [[bad, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [3.0, 1.0, 0.0, 1.0]];
         let before = moc.statistics().occluders.num_dropped_triangles;
-        moc.render_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
+        moc.render_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES).unwrap();
         assert_eq!(moc.statistics().occluders.num_dropped_triangles, before + 1, "{bad}");
-        let answer = moc.test_triangles(Vertices::from_clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
+        let answer = moc.test_triangles(Vertices::clip_space(&triangle), &[0, 1, 2], &BOTH_SIDES);
         assert_eq!(answer, Ok(CullingResult::Visible), "{bad}");
     }
 }
@@ -127,10 +121,10 @@ fn what_is_too_far_is_dropped_or_visible() {
     let mut moc = object(UpdateRule::ThreeLayer, 64, 48);
     let wall = |w: f32| [[-w, -w, 0.0, w], [3.0 * w, -w, 0.0, w], [-w, 3.0 * w, 0.0, w]];
     let far = wall(2.0 * (1_u64 << 40) as f32);
-    moc.render_triangles(Vertices::from_clip_space(&far), &[0, 1, 2], &BOTH_SIDES).unwrap();
+    moc.render_triangles(Vertices::clip_space(&far), &[0, 1, 2], &BOTH_SIDES).unwrap();
     assert_eq!(moc.statistics().occluders.num_dropped_triangles, 1);
-    moc.render_triangles(Vertices::from_clip_space(&wall(1.0)), &[0, 1, 2], &BOTH_SIDES).unwrap();
-    let test = |v: &[[f32; 4]]| moc.test_triangles(Vertices::from_clip_space(v), &[0, 1, 2], &BOTH_SIDES);
+    moc.render_triangles(Vertices::clip_space(&wall(1.0)), &[0, 1, 2], &BOTH_SIDES).unwrap();
+    let test = |v: &[[f32; 4]]| moc.test_triangles(Vertices::clip_space(v), &[0, 1, 2], &BOTH_SIDES);
     assert_eq!(test(&wall(1e6)), Ok(CullingResult::Occluded));
     assert_eq!(test(&far), Ok(CullingResult::Visible));
 }

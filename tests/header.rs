@@ -5,10 +5,11 @@ use std::fs;
 use std::path::Path;
 
 /// The files that export functions or define their types, in the order of the header.
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 13] = [
     "status",
     "messages",
     "types",
+    "mesh",
     "lifecycle",
     "callbacks",
     "draw",

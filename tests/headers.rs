@@ -1,6 +1,6 @@
 //! Whatever programs written for Intel MOC do with its headers compiles with this library's, without warnings, on every
 //! installed compiler and with each standard from C++11 on.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "capi"))]
 
 mod native;
 

@@ -1,9 +1,8 @@
 //! However vertices lie in memory, and whether the matrix is applied here or beforehand, the buffer is the same.
 
-use glam::Mat4;
 use masked_occlusion_culling::{
-    BackfaceWinding, ClipPlanes, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, VertexLayout, Vertices,
-    transform_vertices,
+    BackfaceWinding, ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, Matrix, ModelSpaceLayout,
+    Settings, Vertices, transform_vertices,
 };
 
 const SIZE: (u32, u32) = (150, 90);
@@ -11,6 +10,8 @@ const COUNT: usize = 31 * 3;
 
 /// A column-major matrix without zeros where they could hide a mistake; w is mostly z.
 const MATRIX: [f32; 16] = [1.2, 0.1, 9.0, 0.05, -0.15, 1.4, 9.0, -0.02, 0.03, -0.07, 9.0, 0.9, 0.2, -0.1, 9.0, 1.5];
+
+const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 /// Positions in a box before the camera.
 fn positions() -> Vec<[f32; 3]> {
@@ -20,18 +21,14 @@ fn positions() -> Vec<[f32; 3]> {
 
 fn clip_space() -> Vec<[f32; 4]> {
     let (positions, mut out) = (positions(), vec![[0.0; 4]; COUNT]);
-    transform_vertices(&Mat4::from_cols_array(&MATRIX), Vertices::from_positions(&positions), &mut out);
+    transform_vertices(MATRIX, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut out).unwrap();
     out
 }
 
-fn drawn(implementation: Implementation, vertices: Vertices<'_>, matrix: bool) -> Vec<u32> {
-    let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
-    moc.set_resolution(SIZE.0, SIZE.1).unwrap();
-    let options = DrawOptions {
-        model_to_clip: matrix.then(|| Mat4::from_cols_array(&MATRIX)),
-        winding: BackfaceWinding::None,
-        clip_planes: ClipPlanes::ALL,
-    };
+fn drawn(implementation: Implementation, vertices: Vertices<'_>) -> Vec<u32> {
+    let mut moc =
+        MaskedOcclusionCulling::new(SIZE.0, SIZE.1, Settings::default().with_implementation(implementation)).unwrap();
+    let options = DrawOptions::default().with_winding(BackfaceWinding::None);
     let indices: Vec<u32> = (0..COUNT as u32).collect();
     moc.render_triangles(vertices, &indices, &options).unwrap();
     let mut depth = vec![0.0; (SIZE.0 * SIZE.1) as usize];
@@ -55,13 +52,17 @@ fn transforming_is_the_documented_sum() {
 fn transforming_writes_what_fits() {
     let positions = positions();
     let mut out = vec![[7.5; 4]; COUNT + 3];
-    transform_vertices(&Mat4::IDENTITY, Vertices::from_positions(&positions), &mut out);
+    transform_vertices(IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut out).unwrap();
     for (v, [x, y, z]) in out.iter().zip(&positions) {
         assert_eq!(*v, [*x, *y, *z, 1.0]);
     }
     assert_eq!(out[COUNT..], [[7.5; 4]; 3]);
     let mut short = [[7.5; 4]; 5];
-    transform_vertices(&Mat4::IDENTITY, Vertices::from_positions(&positions), &mut short);
+    transform_vertices(IDENTITY, positions.as_flattened(), ModelSpaceLayout::XYZ, &mut short).unwrap();
+    assert_eq!(short[..], out[..5]);
+    let negative = ModelSpaceLayout::new(12, -4, 8);
+    let refused = transform_vertices(IDENTITY, positions.as_flattened(), negative, &mut short);
+    assert_eq!(refused, Err(masked_occlusion_culling::Error::InvalidLayout));
     assert_eq!(short[..], out[..5]);
 }
 
@@ -74,15 +75,15 @@ fn every_layout_gives_the_same_buffer() {
     let turned: Vec<f32> = clip.iter().flat_map(|v| [v[0], v[3], f32::NAN, v[1], f32::NAN]).collect();
     let n = COUNT as i32;
     for &implementation in Implementation::available() {
-        let want = drawn(implementation, Vertices::from_clip_space(&clip), false);
+        let want = drawn(implementation, Vertices::clip_space(&clip));
         for (name, data, layout) in [
-            ("x, y, w", &packed, VertexLayout::new(12, 4, 8)),
-            ("arrays", &apart, VertexLayout::new(4, 4 * n, 8 * n)),
-            ("x, w, -, y, -", &turned, VertexLayout::new(20, 12, 4)),
+            ("x, y, w", &packed, ClipSpaceLayout::XYW),
+            ("arrays", &apart, ClipSpaceLayout::new(4, 4 * n, 8 * n)),
+            ("x, w, -, y, -", &turned, ClipSpaceLayout::new(20, 12, 4)),
         ] {
             let vertices = Vertices::new(data, layout).unwrap();
             assert_eq!(vertices.len(), COUNT, "{name}");
-            assert!(drawn(implementation, vertices, false) == want, "{implementation:?} {name}");
+            assert!(drawn(implementation, vertices) == want, "{implementation:?} {name}");
         }
     }
 }
@@ -92,11 +93,26 @@ fn a_matrix_gives_what_transforming_beforehand_gives() {
     let (clip, positions) = (clip_space(), positions());
     let wide: Vec<f32> = positions.iter().flat_map(|v| [v[0], v[1], v[2], f32::NAN]).collect();
     for &implementation in Implementation::available() {
-        let want = drawn(implementation, Vertices::from_clip_space(&clip), false);
-        let got = drawn(implementation, Vertices::from_positions(&positions), true);
+        let want = drawn(implementation, Vertices::clip_space(&clip));
+        let got = drawn(implementation, Vertices::model_space(&positions, MATRIX));
         assert!(got == want, "{implementation:?}");
-        let got = drawn(implementation, Vertices::new(&wide, VertexLayout::new(16, 4, 8)).unwrap(), true);
+        let got =
+            drawn(implementation, Vertices::new(&wide, ModelSpaceLayout::XYZ_PADDED.with_matrix(MATRIX)).unwrap());
         assert!(got == want, "{implementation:?}, 16 bytes apart");
+    }
+}
+
+/// Whoever makes it, column by column.
+#[test]
+fn matrices_of_every_source_are_the_same() {
+    let columns: [[f32; 4]; 4] = std::array::from_fn(|column| std::array::from_fn(|row| MATRIX[4 * column + row]));
+    assert_eq!(Matrix::from(MATRIX).as_array(), &MATRIX);
+    assert_eq!(Matrix::from(&MATRIX), Matrix::from(MATRIX));
+    assert_eq!(Matrix::from(columns), Matrix::from(MATRIX));
+    #[cfg(feature = "glam")]
+    {
+        let matrix = masked_occlusion_culling::glam::Mat4::from_cols_array(&MATRIX);
+        assert_eq!((Matrix::from(matrix), Matrix::from(&matrix)), (Matrix::from(MATRIX), Matrix::from(MATRIX)));
     }
 }
 
@@ -109,13 +125,14 @@ fn sparse_and_repeated_indices_give_the_same_buffer() {
     clip.iter().enumerate().for_each(|(i, v)| sparse[i * APART] = *v);
     let spread: Vec<u32> = (0..COUNT).map(|i| (i * APART) as u32).collect();
     for &implementation in Implementation::available() {
-        let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
-        moc.set_resolution(SIZE.0, SIZE.1).unwrap();
-        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
-        moc.render_triangles(Vertices::from_clip_space(&sparse), &spread, &options).unwrap();
+        let mut moc =
+            MaskedOcclusionCulling::new(SIZE.0, SIZE.1, Settings::default().with_implementation(implementation))
+                .unwrap();
+        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
+        moc.render_triangles(Vertices::clip_space(&sparse), &spread, &options).unwrap();
         let mut depth = vec![0.0; (SIZE.0 * SIZE.1) as usize];
         moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
         let got: Vec<u32> = depth.into_iter().map(f32::to_bits).collect();
-        assert!(got == drawn(implementation, Vertices::from_clip_space(&clip), false), "{implementation:?}");
+        assert!(got == drawn(implementation, Vertices::clip_space(&clip)), "{implementation:?}");
     }
 }

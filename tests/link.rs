@@ -1,5 +1,6 @@
 //! Programs whose header declares a class of virtual methods, which cannot change, link the files of `link` and run.
 //! The header is one of our own (`capi-tests/abstract_header`) with the methods in the order that theirs has.
+#![cfg(feature = "capi")]
 
 mod native;
 

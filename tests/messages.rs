@@ -1,6 +1,6 @@
 //! Every function that can refuse a call reports it under its own name.
 
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 
@@ -39,6 +39,9 @@ fn call_all() {
         MOC_MergeBuffers(null_mut(), null(), 1);
         MOC_RenderTriangles(null_mut(), null(), null(), 1, null(), 1, 0x1f, null(), null_mut());
         MOC_RenderTrianglesChecked(null_mut(), null(), 1, null(), 1, null(), 1, 0x1f, null(), null_mut());
+        MOC_RenderMesh(null_mut(), null(), null_mut());
+        MOC_TestMesh(null(), null(), null_mut());
+        MOC_BinMesh(null(), null(), null_mut(), 1, 1, null_mut());
         MOC_RenderTrilist(null(), null(), null());
         MOC_TestTriangles(null(), null(), null(), 1, null(), 1, 0x1f, null(), null_mut());
         MOC_TestTrianglesChecked(null(), null(), 1, null(), 1, null(), 1, 0x1f, null(), null_mut());
@@ -52,7 +55,8 @@ fn call_all() {
         MOC_TransformVertices(null(), null(), null_mut(), 1, null());
         MOC_RecorderStart(null(), null());
         MOC_RecorderStop(null());
-        MOC_RecordRenderTriangles(null(), null(), null(), 1, null(), 0x1f, 1, null(), 0);
+        MOC_RecordRenderTriangles(null(), null(), null(), 1, null(), 1, 0x1f, null(), 0);
+        MOC_RecordMesh(null(), null(), 0);
         MOC_RecordingLoad(null(), null_mut());
         MOC_RecordingFromMemory(null(), 1, null_mut());
         MOC_RecordingGetInfo(null(), null_mut());
@@ -64,10 +68,8 @@ fn call_all() {
         MOC_ThreadpoolIsDone(null(), null_mut());
         MOC_ThreadpoolGetThreads(null(), null_mut());
         MOC_ThreadpoolGetBins(null(), null_mut(), null_mut());
-        MOC_ThreadpoolRenderMesh(null(), null(), null(), 1, null(), 1, 0x1f, null());
-        MOC_ThreadpoolRenderMeshChecked(null(), null(), 1, null(), 1, null(), 1, 0x1f, null());
-        MOC_ThreadpoolTestMesh(null(), null(), null(), 1, null(), 1, 0x1f, null(), null_mut());
-        MOC_ThreadpoolTestMeshChecked(null(), null(), 1, null(), 1, null(), 1, 0x1f, null(), null_mut());
+        MOC_ThreadpoolRenderMesh(null(), null());
+        MOC_ThreadpoolTestMesh(null(), null(), null_mut());
         MOC_ThreadpoolWakeThreads(null());
         MOC_ThreadpoolSuspendThreads(null());
         MOC_ThreadpoolFlush(null());

@@ -44,7 +44,7 @@ fn compare(
     depth: &mut Vec<f32>,
 ) -> Result<(), String> {
     moc.set_near_clip_plane(near).unwrap();
-    moc.clear_buffer().unwrap();
+    moc.clear_buffer();
     draw_clip(moc, &v.map(|[x, y, w]| [x, y, 0.0, w]));
     read(moc, depth);
     for (i, (&stored, &(place, most))) in depth.iter().zip(allowed).enumerate() {
@@ -122,7 +122,7 @@ fn depths_of_floors_under_the_eye() {
                 continue;
             };
             moc.set_near_clip_plane(near).unwrap();
-            moc.clear_buffer().unwrap();
+            moc.clear_buffer();
             draw_clip(moc, &v.map(|[x, y, w]| [x, y, 0.0, w]));
             read(moc, depth);
             for (i, &stored) in depth.iter().enumerate() {

@@ -68,10 +68,10 @@ fn numbering_changes_no_bit_and_no_answer() {
             let mut expected = None;
             for (k, (vertices, indices)) in meshes.iter().enumerate() {
                 let mut moc = object(*implementation, RULES[0], masked_occlusion_culling::YAxis::Down, SIZE);
-                let drawn = moc.render_triangles(Vertices::from_clip_space(vertices), indices, &both_sides()).unwrap();
+                let drawn = moc.render_triangles(Vertices::clip_space(vertices), indices, &both_sides()).unwrap();
                 assert_eq!(drawn, CullingResult::Visible);
                 let hidden: Vec<[f32; 4]> = vertices.iter().map(|v| v.map(|x| x * 12.0)).collect();
-                let answer = moc.test_triangles(Vertices::from_clip_space(&hidden), indices, &both_sides()).unwrap();
+                let answer = moc.test_triangles(Vertices::clip_space(&hidden), indices, &both_sides()).unwrap();
                 let found = (bits(&moc), answer);
                 match &expected {
                     None => expected = Some(found),

@@ -5,34 +5,32 @@ mod scenes;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use masked_occlusion_culling::{
-    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings,
-    UpdateRule, VertexLayout, Vertices,
+    BackfaceWinding, ClipSpaceLayout, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling,
+    ModelSpaceLayout, Settings, ThreadpoolSettings, UpdateRule, Vertices,
 };
 use scenes::{Numbers, Scene};
 
 fn object(width: u32, height: u32, near: f32, settings: Settings) -> MaskedOcclusionCulling {
-    let mut moc = MaskedOcclusionCulling::new(settings);
-    moc.set_resolution(width, height).unwrap();
+    let mut moc = MaskedOcclusionCulling::new(width, height, settings).unwrap();
     moc.set_near_clip_plane(near).unwrap();
     moc
 }
 
 fn pixels(moc: &MaskedOcclusionCulling) -> Vec<f32> {
-    let (width, height) = moc.resolution().unwrap();
+    let (width, height) = moc.resolution();
     let mut depth = vec![0.0; width as usize * height as usize];
     moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
     depth
 }
 
 fn vertices(scene: &Scene) -> Vertices<'_> {
-    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
-    Vertices::new(scene.vertices.as_flattened(), layout).unwrap()
-}
-
-fn options(scene: &Scene, winding: BackfaceWinding) -> DrawOptions {
-    DrawOptions { model_to_clip: scene.matrix.as_ref().map(Mat4::from_cols_array), winding, ..DrawOptions::default() }
+    let space = match scene.matrix {
+        Some(matrix) => ModelSpaceLayout::XYZ_PADDED.with_matrix(matrix),
+        None => ClipSpaceLayout::XYZW.into(),
+    };
+    Vertices::new(scene.vertices.as_flattened(), space).unwrap()
 }
 
 #[test]
@@ -42,7 +40,14 @@ fn scenes_have_the_bits_and_counts_of_one_thread() {
             [(0, 1, 1, 1), (1, 4, 4, 32), (2, 3, 2, 2), (3, 1, 64, 5), (8, 7, 7, 1), (2, u32::MAX, u32::MAX, 32)]
         {
             let processors = if max_jobs == 5 { 2 } else { threads + 1 };
-            let pool = CullingThreadpool::with_processors(threads, bins_w, bins_h, max_jobs, processors).unwrap();
+            let pool = CullingThreadpool::new(
+                ThreadpoolSettings::default()
+                    .with_threads(threads)
+                    .with_bins(bins_w, bins_h)
+                    .with_max_jobs(max_jobs)
+                    .with_processors(processors),
+            )
+            .unwrap();
             pool.wake_threads();
             for (width, height) in [(333, 205), (1, 1), (1030, 517)] {
                 for statistics in [false, true] {
@@ -51,13 +56,13 @@ fn scenes_have_the_bits_and_counts_of_one_thread() {
                         333 => UpdateRule::ThreeLayer,
                         _ => UpdateRule::FourLayer,
                     };
-                    let settings = Settings { statistics, update_rule, ..Settings::default() };
+                    let settings = Settings::default().with_statistics(statistics).with_update_rule(update_rule);
                     let mut direct = object(width, height, scene.near, settings);
                     pool.set_buffer(object(width, height, scene.near, settings));
                     pool.scope(|scope| {
                         for (k, triangles) in scene.objects.iter().enumerate() {
                             let winding = [BackfaceWinding::Clockwise, BackfaceWinding::None][k % 2];
-                            let options = options(&scene, winding);
+                            let options = DrawOptions::default().with_winding(winding);
                             scope.render_triangles(vertices(&scene), triangles, &options).unwrap();
                             direct.render_triangles(vertices(&scene), triangles, &options).unwrap();
                         }
@@ -91,12 +96,15 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
     let other = {
         let mut other = object(200, 130, 0.1, Settings::default());
         for (flat, triangles) in &meshes[..8] {
-            let vertices = Vertices::new(flat, VertexLayout::CLIP_SPACE).unwrap();
+            let vertices = Vertices::new(flat, ClipSpaceLayout::XYZW).unwrap();
             other.render_triangles(vertices, triangles, &DrawOptions::default()).unwrap();
         }
         other
     };
-    let pool = CullingThreadpool::with_processors(threads, 4, 4, max_jobs, threads + 1).unwrap();
+    let pool = CullingThreadpool::new(
+        ThreadpoolSettings::default().with_threads(threads).with_max_jobs(max_jobs).with_processors(threads + 1),
+    )
+    .unwrap();
     pool.set_buffer(object(200, 130, 0.1, Settings::default()));
     let mut direct = object(200, 130, 0.1, Settings::default());
     pool.wake_threads();
@@ -106,7 +114,7 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                 match numbers.next() % 64 {
                     0..2 => {
                         pool.clear_buffer().unwrap();
-                        direct.clear_buffer().unwrap();
+                        direct.clear_buffer();
                     }
                     2 => {
                         // A column of tiles or of areas, too, of which several rows of bins are made.
@@ -130,17 +138,16 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                     }
                     _ => {
                         let (flat, triangles) = &meshes[numbers.next() as usize % meshes.len()];
-                        let turned = Mat4::from_scale(glam::Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
-                        let options = DrawOptions {
-                            // z of the mesh is 0, and its w comes as z.
-                            model_to_clip: numbers.next().is_multiple_of(2).then(|| {
-                                Mat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.])
-                                    * turned
-                            }),
-                            winding: BackfaceWinding::None,
-                            ..DrawOptions::default()
+                        let wider = Mat4::from_scale(Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
+                        // z of the mesh is 0, and its w comes as z.
+                        let matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.];
+                        let matrix = Mat4::from_cols_array(&matrix) * wider;
+                        let space = match numbers.next().is_multiple_of(2) {
+                            true => ModelSpaceLayout::new(16, 4, 12).with_matrix(matrix.to_cols_array()),
+                            false => ClipSpaceLayout::XYZW.into(),
                         };
-                        let vertices = Vertices::new(flat, VertexLayout::CLIP_SPACE).unwrap();
+                        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
+                        let vertices = Vertices::new(flat, space).unwrap();
                         scope.render_triangles(vertices, triangles, &options).unwrap();
                         direct.render_triangles(vertices, triangles, &options).unwrap();
                     }
@@ -180,17 +187,15 @@ const WALL: [f32; 16] = [-9., -9., 0., 4., 9., -9., 0., 4., 9., 9., 0., 4., -9.,
 const TWO: [u32; 6] = [0, 1, 2, 0, 2, 3];
 
 fn draw_wall(pool: &CullingThreadpool) {
-    let vertices = Vertices::new(&WALL, VertexLayout::CLIP_SPACE).unwrap();
+    let vertices = Vertices::new(&WALL, ClipSpaceLayout::XYZW).unwrap();
     // SAFETY: a constant.
-    unsafe {
-        pool.render_triangles(vertices, &TWO, &DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() })
-    }
-    .unwrap();
+    unsafe { pool.render_triangles(vertices, &TWO, &DrawOptions::default().with_winding(BackfaceWinding::None)) }
+        .unwrap();
 }
 
 #[test]
 fn what_was_cleared_hides_nothing_from_then_on() {
-    let pool = CullingThreadpool::with_processors(2, 4, 4, 32, 3).unwrap();
+    let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(2).with_processors(3)).unwrap();
     pool.set_buffer(object(640, 400, 0.1, Settings::default()));
     pool.wake_threads();
     let behind = |pool: &CullingThreadpool| pool.test_rect(-0.9, -0.9, 0.9, 0.9, 8.0).unwrap();
@@ -204,12 +209,12 @@ fn what_was_cleared_hides_nothing_from_then_on() {
         }
         pool.clear_buffer().unwrap();
         assert_eq!(behind(&pool), CullingResult::Visible, "frame {frame}");
-        let wall = Vertices::new(&WALL, VertexLayout::CLIP_SPACE).unwrap();
-        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+        let wall = Vertices::new(&WALL, ClipSpaceLayout::XYZW).unwrap();
+        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
         assert_eq!(pool.test_triangles(wall, &TWO, &options), Ok(CullingResult::Visible), "frame {frame}");
         // Found by the fuzzer: a triangle that passes by the corner of the screen, with a box that the wall hid.
         let passes = [9.6, 7.2, 0.0, 8.0, 7.2, 9.6, 0.0, 8.0, 9.6, 9.6, 0.0, 8.0];
-        let passes = Vertices::new(&passes, VertexLayout::CLIP_SPACE).unwrap();
+        let passes = Vertices::new(&passes, ClipSpaceLayout::XYZW).unwrap();
         let result = pool.test_triangles(passes, &[0, 1, 2], &options).unwrap();
         assert_ne!(result, CullingResult::Occluded, "frame {frame}");
         pool.flush();
@@ -221,8 +226,10 @@ fn what_was_cleared_hides_nothing_from_then_on() {
 
 #[test]
 fn several_threads_submit_and_query_at_once() {
-    let pool = CullingThreadpool::with_processors(2, 4, 4, 4, 3).unwrap();
-    pool.set_buffer(object(640, 400, 0.1, Settings { statistics: true, ..Settings::default() }));
+    let pool =
+        CullingThreadpool::new(ThreadpoolSettings::default().with_threads(2).with_max_jobs(4).with_processors(3))
+            .unwrap();
+    pool.set_buffer(object(640, 400, 0.1, Settings::default().with_statistics(true)));
     pool.wake_threads();
     let scene = &scenes::all()[0];
     let ends = AtomicBool::new(false);
@@ -231,7 +238,7 @@ fn several_threads_submit_and_query_at_once() {
             for _ in 0..50 {
                 pool.scope(|scope| {
                     for triangles in &scene.objects {
-                        let options = options(scene, BackfaceWinding::None);
+                        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
                         scope.render_triangles(vertices(scene), triangles, &options).unwrap();
                     }
                 });
@@ -254,18 +261,20 @@ fn several_threads_submit_and_query_at_once() {
 
 #[test]
 fn every_order_of_calls_is_defined() {
-    let pool = CullingThreadpool::with_processors(3, 2, 2, 2, 4).unwrap();
+    let pool = CullingThreadpool::new(
+        ThreadpoolSettings::default().with_threads(3).with_bins(2, 2).with_max_jobs(2).with_processors(4),
+    )
+    .unwrap();
     // Without an object.
     pool.flush();
-    assert_eq!(pool.clear_buffer(), Err(Error::NoBuffer));
-    assert_eq!(pool.test_rect(0.0, 0.0, 1.0, 1.0, 1.0), Err(Error::NoBuffer));
-    assert_eq!(pool.set_resolution(64, 64), Err(Error::NoBuffer));
+    assert_eq!(pool.clear_buffer(), Err(Error::NoObject));
+    assert_eq!(pool.test_rect(0.0, 0.0, 1.0, 1.0, 1.0), Err(Error::NoObject));
+    assert_eq!(pool.set_resolution(64, 64), Err(Error::NoObject));
     assert!(pool.take_buffer().is_none());
     pool.wake_threads();
     pool.wake_threads();
-    // An object without a buffer gets one through the pool.
-    pool.set_buffer(MaskedOcclusionCulling::default());
-    assert_eq!(pool.clear_buffer(), Err(Error::NoBuffer));
+    // It gets another size through the pool.
+    pool.set_buffer(object(1, 1, 0.0, Settings::default()));
     pool.set_resolution(640, 400).unwrap();
     assert_eq!(pool.set_resolution(0, 400), Err(Error::InvalidSize));
     assert_eq!(pool.set_near_clip_plane(f32::NAN), Err(Error::InvalidNumber));
@@ -291,5 +300,11 @@ fn every_order_of_calls_is_defined() {
         draw_wall(&pool);
     }
     drop(pool);
-    assert!(CullingThreadpool::new(1, 0, 1, 1).is_err() && CullingThreadpool::new(1, 1, 1, 0).is_err());
+    for none in [
+        ThreadpoolSettings::default().with_bins(0, 1),
+        ThreadpoolSettings::default().with_bins(1, 0),
+        ThreadpoolSettings::default().with_max_jobs(0),
+    ] {
+        assert_eq!(CullingThreadpool::new(none).err(), Some(Error::InvalidSize));
+    }
 }

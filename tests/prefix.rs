@@ -1,7 +1,7 @@
 //! Programs that are compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): what they call, what they define, and that all
 //! names of the library's functions are free for the program. `.ci/prefix` builds such a library, then links and runs programs
 //! with it.
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
 

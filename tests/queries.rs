@@ -76,7 +76,7 @@ fn run(cases: u32, seed: u64, occludee: impl Strategy<Value = [[f32; 3]; 3]>) {
         let mut exact = Oracle::new(SIZE.0, SIZE.1);
         occluders.iter().for_each(|t| exact.draw(t));
         state.borrow_mut().iter_mut().try_for_each(|moc| {
-            moc.clear_buffer().unwrap();
+            moc.clear_buffer();
             moc.set_near_clip_plane(0.0).unwrap();
             draw(moc, &occluders);
             moc.set_near_clip_plane(NEAR).unwrap();

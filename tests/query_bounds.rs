@@ -64,7 +64,7 @@ fn walls(moc: &mut MaskedOcclusionCulling, block: (usize, usize), z: f64, near: 
     let (x0, y0) = (block.0 * BLOCK.0, block.1 * BLOCK.1);
     let (x1, y1) = (x0 + BLOCK.0, y0 + BLOCK.1);
     let (w, h) = SIZE;
-    moc.clear_buffer().unwrap();
+    moc.clear_buffer();
     for (x, y, z) in [
         ((x0, x1), (y0, y1), z),
         ((0, x0), (0, h), near),

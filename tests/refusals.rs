@@ -1,16 +1,16 @@
 //! What is refused, with which error, and that nothing is drawn or changed then.
 
 use masked_occlusion_culling::{
+    ClipSpaceLayout,
     CullingResult::{ViewCulled, Visible},
-    DrawOptions, Error, Implementation, MaskedOcclusionCulling, Settings, TriList, VertexLayout, Vertices,
+    DrawOptions, Error, Implementation, MaskedOcclusionCulling, ModelSpaceLayout, Settings, TriList, Vertices,
 };
 
 const TRIANGLE: [[f32; 4]; 3] = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0]];
 
 fn every(mut test: impl FnMut(MaskedOcclusionCulling)) {
     for &implementation in Implementation::available() {
-        let mut moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
-        moc.set_resolution(64, 32).unwrap();
+        let moc = MaskedOcclusionCulling::new(64, 32, Settings::default().with_implementation(implementation)).unwrap();
         test(moc);
     }
 }
@@ -22,30 +22,17 @@ fn untouched(moc: &MaskedOcclusionCulling) -> bool {
 }
 
 #[test]
-fn without_a_buffer_everything_says_so() {
-    let mut moc = MaskedOcclusionCulling::default();
-    let (vertices, options) = (Vertices::from_clip_space(&TRIANGLE), DrawOptions::default());
-    let mut storage = [0.0; 9];
-    let mut lists = [TriList::new(&mut storage)];
-    assert_eq!(moc.resolution(), None);
-    assert_eq!(moc.clear_buffer(), Err(Error::NoBuffer));
-    assert_eq!(moc.render_triangles(vertices, &[0, 1, 2], &options), Err(Error::NoBuffer));
-    assert_eq!(moc.test_triangles(vertices, &[0, 1, 2], &options), Err(Error::NoBuffer));
-    assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 1.0), Err(Error::NoBuffer));
-    assert_eq!(moc.bin_triangles(vertices, &[0, 1, 2], &mut lists, 1, 1, &options), Err(Error::NoBuffer));
-    assert_eq!(moc.render_trilist(&lists[0], None), Err(Error::NoBuffer));
-    assert_eq!(moc.compute_bin_size(1, 1), Err(Error::NoBuffer));
-    assert_eq!(moc.compute_pixel_depth_buffer(&mut [], false), Err(Error::NoBuffer));
-    let mut other = MaskedOcclusionCulling::default();
-    other.set_resolution(8, 8).unwrap();
-    assert_eq!(moc.merge_buffer(&other), Err(Error::NoBuffer));
-    assert_eq!(other.merge_buffer(&moc), Err(Error::NoBuffer));
+fn sizes_that_no_object_can_have() {
+    for (width, height) in [(0, 0), (0, 8), (8, 0), (16_385, 8), (8, 16_385), (u32::MAX, u32::MAX)] {
+        let refused = MaskedOcclusionCulling::new(width, height, Settings::default()).err();
+        assert_eq!(refused, Some(Error::InvalidSize), "{width}x{height}");
+    }
 }
 
 #[test]
 fn indices_out_of_range_draw_nothing() {
     every(|mut moc| {
-        let (vertices, options) = (Vertices::from_clip_space(&TRIANGLE), DrawOptions::default());
+        let (vertices, options) = (Vertices::clip_space(&TRIANGLE), DrawOptions::default());
         // The bad index at every place of meshes of many lengths, so that every lane of the scan sees it.
         for triangles in [1, 2, 5, 6, 11, 43] {
             for place in 0..triangles * 3 {
@@ -71,7 +58,7 @@ fn indices_out_of_range_draw_nothing() {
 #[test]
 fn no_vertices_and_no_triangles() {
     every(|mut moc| {
-        let (none, options) = (Vertices::from_clip_space(&[]), DrawOptions::default());
+        let (none, options) = (Vertices::clip_space(&[]), DrawOptions::default());
         assert_eq!(moc.render_triangles(none, &[0, 0, 0], &options), Err(Error::IndexOutOfRange));
         assert!(moc.render_triangles(none, &[], &options).is_ok());
         assert!(moc.test_triangles(none, &[], &options).is_ok());
@@ -82,7 +69,7 @@ fn no_vertices_and_no_triangles() {
 #[test]
 fn indices_that_are_not_whole_triangles() {
     every(|mut moc| {
-        let (vertices, options) = (Vertices::from_clip_space(&TRIANGLE), DrawOptions::default());
+        let (vertices, options) = (Vertices::clip_space(&TRIANGLE), DrawOptions::default());
         for indices in [&[0][..], &[0, 1], &[0, 1, 2, 0], &[0, 1, 2, 0, 1]] {
             assert_eq!(moc.render_triangles(vertices, indices, &options), Err(Error::InvalidSize));
             assert_eq!(moc.test_triangles(vertices, indices, &options), Err(Error::InvalidSize));
@@ -93,7 +80,7 @@ fn indices_that_are_not_whole_triangles() {
 
 #[test]
 fn near_planes_that_are_not_finite() {
-    let mut moc = MaskedOcclusionCulling::default();
+    let mut moc = MaskedOcclusionCulling::new(8, 8, Settings::default()).unwrap();
     assert_eq!(moc.near_clip_plane(), 0.0);
     moc.set_near_clip_plane(0.5).unwrap();
     for near in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -105,16 +92,18 @@ fn near_planes_that_are_not_finite() {
 #[test]
 fn layouts_with_negative_offsets() {
     for (stride, y, w) in [(-16, 4, 12), (16, -4, 12), (16, 4, -12), (i32::MIN, 0, 0), (0, i32::MIN, 0)] {
-        let layout = VertexLayout::new(stride, y, w);
+        let layout = ClipSpaceLayout::new(stride, y, w);
         assert_eq!(Vertices::new(&[0.0; 16], layout).err(), Some(Error::InvalidLayout));
+        let space = ModelSpaceLayout::new(stride, y, w).with_matrix([0.0; 16]);
+        assert_eq!(Vertices::new(&[0.0; 16], space).err(), Some(Error::InvalidLayout));
     }
     // Offsets beyond the slice leave no vertex at all.
     for (stride, y, w) in [(16, 4, i32::MAX), (i32::MAX, i32::MAX, i32::MAX), (4, 64, 8)] {
-        assert_eq!(Vertices::new(&[0.0; 16], VertexLayout::new(stride, y, w)).unwrap().len(), 0);
+        assert_eq!(Vertices::new(&[0.0; 16], ClipSpaceLayout::new(stride, y, w)).unwrap().len(), 0);
     }
-    assert_eq!(Vertices::new(&[0.0; 16], VertexLayout::CLIP_SPACE).unwrap().len(), 4);
-    assert_eq!(Vertices::new(&[0.0; 15], VertexLayout::CLIP_SPACE).unwrap().len(), 3);
-    assert_eq!(Vertices::new(&[0.0; 12], VertexLayout::new(4, 16, 32)).unwrap().len(), 4);
+    assert_eq!(Vertices::new(&[0.0; 16], ClipSpaceLayout::XYZW).unwrap().len(), 4);
+    assert_eq!(Vertices::new(&[0.0; 15], ClipSpaceLayout::XYZW).unwrap().len(), 3);
+    assert_eq!(Vertices::new(&[0.0; 12], ClipSpaceLayout::new(4, 16, 32)).unwrap().len(), 4);
 }
 
 #[test]
@@ -122,10 +111,12 @@ fn the_instruction_set_is_capped_by_the_argument() {
     let all = Implementation::available();
     assert_eq!(all[0], Implementation::Scalar);
     for &implementation in all {
-        let moc = MaskedOcclusionCulling::new(Settings { implementation, ..Settings::default() });
+        let settings = Settings::default().with_implementation(implementation);
+        let moc = MaskedOcclusionCulling::new(8, 8, settings).unwrap();
         assert_eq!(moc.implementation(), implementation);
     }
-    assert_eq!(MaskedOcclusionCulling::default().implementation(), *all.last().unwrap());
+    let best = MaskedOcclusionCulling::new(8, 8, Settings::default()).unwrap().implementation();
+    assert_eq!(best, *all.last().unwrap());
     if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
         for cap in [Implementation::Sse2, Implementation::Sse41, Implementation::Avx2, Implementation::Avx512] {
             let got = cap.capped();
@@ -151,13 +142,13 @@ fn the_instruction_set_is_capped_by_the_argument() {
 fn what_faces_away_or_lies_outside_is_view_culled() {
     every(|mut moc| {
         let options = DrawOptions::default();
-        let vertices = Vertices::from_clip_space(&TRIANGLE);
+        let vertices = Vertices::clip_space(&TRIANGLE);
         // Clockwise in normalised device coordinates, y up, faces away.
         assert_eq!(moc.render_triangles(vertices, &[0, 2, 1], &options), Ok(ViewCulled));
         assert_eq!(moc.test_triangles(vertices, &[0, 2, 1], &options), Ok(ViewCulled));
         for [x, y, w] in [[5.0, 0.0, 1.0], [-5.0, 0.0, 1.0], [0.0, 5.0, 1.0], [0.0, -5.0, 1.0], [0.0, 0.0, -5.0]] {
             let away = TRIANGLE.map(|v| [v[0] * 0.1 + x, v[1] * 0.1 + y, 0.0, w]);
-            let away = Vertices::from_clip_space(&away);
+            let away = Vertices::clip_space(&away);
             assert_eq!(moc.render_triangles(away, &[0, 1, 2], &options), Ok(ViewCulled), "{x} {y} {w}");
             assert_eq!(moc.test_triangles(away, &[0, 1, 2], &options), Ok(ViewCulled), "{x} {y} {w}");
         }

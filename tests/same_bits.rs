@@ -4,10 +4,9 @@
 
 mod scenes;
 
-use glam::Mat4;
 use masked_occlusion_culling::{
-    Allocator, BackfaceWinding, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, Statistics, UpdateRule,
-    VertexLayout, Vertices, YAxis,
+    BackfaceWinding, ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, ModelSpaceLayout, Settings,
+    Statistics, UpdateRule, Vertices, YAxis,
 };
 use scenes::Scene;
 
@@ -48,21 +47,25 @@ fn hashes(scene: &Scene, implementation: Implementation, rule: UpdateRule) -> [u
     let (w, h) = (333, 205);
     let mut all = [Hash::new(), Hash::new(), Hash::new()];
     let [buffer, answers, statistics] = &mut all;
-    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
-    let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
+    let space = match scene.matrix {
+        Some(matrix) => ModelSpaceLayout::XYZ_PADDED.with_matrix(matrix),
+        None => ClipSpaceLayout::XYZW.into(),
+    };
+    let vertices = Vertices::new(scene.vertices.as_flattened(), space).unwrap();
     let mut depth = vec![0.0; w * h];
     for y_axis in [YAxis::Down, YAxis::Up] {
         for winding in [BackfaceWinding::Clockwise, BackfaceWinding::None] {
-            let settings =
-                Settings { implementation, update_rule: rule, y_axis, allocator: Allocator::SYSTEM, statistics: true };
-            let mut moc = MaskedOcclusionCulling::new(settings);
-            moc.set_resolution(w as u32, h as u32).unwrap();
+            let settings = Settings::default()
+                .with_implementation(implementation)
+                .with_update_rule(rule)
+                .with_y_axis(y_axis)
+                .with_statistics(true);
+            let mut moc = MaskedOcclusionCulling::new(w as u32, h as u32, settings).unwrap();
             moc.set_near_clip_plane(scene.near).unwrap();
-            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
-            let options = DrawOptions { model_to_clip, winding, ..DrawOptions::default() };
+            let options = DrawOptions::default().with_winding(winding);
             for object in &scene.objects {
                 let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
-                answers.add(moc.test_rect(x0, y0, x1, y1, nearest).unwrap() as u64);
+                answers.add(moc.test_rect(x0, y0, x1, y1, nearest) as u64);
                 answers.add(moc.test_triangles(vertices, object, &options).unwrap() as u64);
                 answers.add(moc.render_triangles(vertices, object, &options).unwrap() as u64);
             }
@@ -148,17 +151,20 @@ fn every_instruction_set_agrees_after_every_object() {
     let (w, h) = (160, 90);
     for scene in scenes::all() {
         for rule in RULES {
-            let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
-            let vertices = Vertices::new(scene.vertices.as_flattened(), layout).unwrap();
-            let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
-            let options = DrawOptions { model_to_clip, ..DrawOptions::default() };
+            let space = match scene.matrix {
+                Some(matrix) => ModelSpaceLayout::XYZ_PADDED.with_matrix(matrix),
+                None => ClipSpaceLayout::XYZW.into(),
+            };
+            let vertices = Vertices::new(scene.vertices.as_flattened(), space).unwrap();
+            let options = DrawOptions::default();
             let mut objects: Vec<_> = Implementation::available()
                 .iter()
                 .map(|&implementation| {
-                    let settings =
-                        Settings { implementation, update_rule: rule, statistics: true, ..Settings::default() };
-                    let mut moc = MaskedOcclusionCulling::new(settings);
-                    moc.set_resolution(w, h).unwrap();
+                    let settings = Settings::default()
+                        .with_implementation(implementation)
+                        .with_update_rule(rule)
+                        .with_statistics(true);
+                    let mut moc = MaskedOcclusionCulling::new(w, h, settings).unwrap();
                     moc.set_near_clip_plane(scene.near).unwrap();
                     moc
                 })
@@ -167,7 +173,7 @@ fn every_instruction_set_agrees_after_every_object() {
             for (i, object) in scene.objects.iter().enumerate() {
                 let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
                 let answers = objects.iter().map(|moc| {
-                    let rectangle = moc.test_rect(x0, y0, x1, y1, nearest).unwrap();
+                    let rectangle = moc.test_rect(x0, y0, x1, y1, nearest);
                     (rectangle, moc.test_triangles(vertices, object, &options).unwrap())
                 });
                 let answers: Vec<_> = answers.collect();
@@ -224,14 +230,13 @@ fn every_instruction_set_agrees_on_wide_triangles() {
             vertices.push([(2.2 * random() - 1.1) * z, (2.2 * random() - 1.1) * z, 0.0, z]);
         }
         let indices: Vec<u32> = (0..vertices.len() as u32).collect();
-        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
         for rule in RULES {
             let mut first: Option<Vec<u32>> = None;
             for &implementation in Implementation::available() {
-                let settings = Settings { implementation, update_rule: rule, ..Settings::default() };
-                let mut moc = MaskedOcclusionCulling::new(settings);
-                moc.set_resolution(w, h).unwrap();
-                moc.render_triangles(Vertices::from_clip_space(&vertices), &indices, &options).unwrap();
+                let settings = Settings::default().with_implementation(implementation).with_update_rule(rule);
+                let mut moc = MaskedOcclusionCulling::new(w, h, settings).unwrap();
+                moc.render_triangles(Vertices::clip_space(&vertices), &indices, &options).unwrap();
                 let mut depth = vec![0.0; (w * h) as usize];
                 moc.compute_pixel_depth_buffer(&mut depth, false).unwrap();
                 let who = format!("{implementation:?} {rule:?} {w}x{h}");

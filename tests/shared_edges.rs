@@ -23,7 +23,7 @@ fn times_covered(moc: &mut MaskedOcclusionCulling, triangles: &[Triangle]) -> Ve
     read(moc, &mut depth);
     let mut times = vec![0; depth.len()];
     for t in triangles {
-        moc.clear_buffer().unwrap();
+        moc.clear_buffer();
         draw(moc, &[*t]);
         read(moc, &mut depth);
         times.iter_mut().zip(&depth).for_each(|(n, d)| *n += u8::from(*d >= 0.0));

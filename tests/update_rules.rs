@@ -46,7 +46,7 @@ fn rectangle(moc: &MaskedOcclusionCulling, [x0, y0, x1, y1]: [f64; 4], w: f32) -
     let x = |v: f64| (v * 2.0 / SIZE.0 as f64 - 1.0) as f32;
     let y = |v: f64| (v * 2.0 / SIZE.1 as f64 - 1.0) as f32;
     let (low, high) = if moc.y_axis() == YAxis::Up { (y(y0), y(y1)) } else { (-y(y1), -y(y0)) };
-    moc.test_rect(x(x0), low, x(x1), high, w).unwrap()
+    moc.test_rect(x(x0), low, x(x1), high, w)
 }
 
 /// Would an exact buffer show any of it: at a covered centre, or at an inner point of a touched pixel?

@@ -16,9 +16,9 @@ fn compare(moc: &mut MaskedOcclusionCulling, t: &Triangle, exact: &Oracle, depth
     let clockwise = (area(t) > 0) == (moc.y_axis() == YAxis::Down);
     for winding in [BackfaceWinding::Clockwise, BackfaceWinding::CounterClockwise] {
         let away = clockwise == (winding == BackfaceWinding::Clockwise);
-        moc.clear_buffer().unwrap();
-        let options = DrawOptions { winding, ..DrawOptions::default() };
-        let result = moc.render_triangles(Vertices::from_clip_space(&vertices), &indices, &options).unwrap();
+        moc.clear_buffer();
+        let options = DrawOptions::default().with_winding(winding);
+        let result = moc.render_triangles(Vertices::clip_space(&vertices), &indices, &options).unwrap();
         read(moc, depth);
         let fail = |why: &str| Err(format!("{} {winding:?}: {why}\n{vertices:?}", name(moc)));
         if away || area(t) == 0 {

@@ -28,11 +28,10 @@ pub struct Options<'a> {
 /// Plays, and says what it finds. An error where an answer differs from the one recorded.
 pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let recording = Recording::load(options.file).map_err(|error| format!("{}: {error}", options.file.display()))?;
-    let mut moc = MaskedOcclusionCulling::new(Settings {
-        implementation: options.isa.map_or(Implementation::Avx512, Implementation::from),
-        update_rule: options.rule.into(),
-        ..Settings::default()
-    });
+    let settings = Settings::default()
+        .with_implementation(options.isa.map_or(Implementation::Avx512, Implementation::from))
+        .with_update_rule(options.rule.into());
+    let mut moc = MaskedOcclusionCulling::new(recording.resolution.0, recording.resolution.1, settings)?;
     say(&format!("{}: {}", options.file.display(), Content::of(&recording)));
 
     let differ = check(&recording, &mut moc)?;
@@ -135,6 +134,7 @@ impl Content {
                     content.queries += 1;
                     content.queried += mesh.triangles.len() / 3;
                 }
+                _ => {}
             }
         }
         content
@@ -155,6 +155,7 @@ fn kind(call: &RecordedCall) -> &'static str {
         RecordedCall::TestRect(_) => "a rectangle",
         RecordedCall::RenderTriangles(_) => "a draw",
         RecordedCall::TestTriangles(_) => "a query",
+        _ => "another call",
     }
 }
 

@@ -36,8 +36,9 @@ export class Culling {
         this.out = this.arena.allocate(8);
         this.pixels = [width, height];
         const settings = this.arena.allocate(32);
+        new Int32Array(this.memory.buffer, settings, 1)[0] = 32;
         this.check(this.moc.MOC_DefaultSettings(settings));
-        new Int32Array(this.memory.buffer, settings, 1)[0] = implementation;
+        new Int32Array(this.memory.buffer, settings, 2)[1] = implementation;
         this.check(this.moc.MOC_Create(settings, this.out));
         this.object = this.word(this.out);
         this.check(this.moc.MOC_SetResolution(this.object, width, height));

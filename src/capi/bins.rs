@@ -1,13 +1,13 @@
 //! Sorting triangles into the lists of bins.
 
 use super::lifecycle::BINS;
-use super::mesh::MeshArguments;
-use super::pointers::{check_length, object, slice_mut};
+use super::mesh::{Describe, MOC_Mesh, MeshArguments};
+use super::pointers::{check_length, object, slice_mut, with_buffer};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard_result};
 use super::types::{MOC_TriList, MOC_VertexLayout};
 use crate::bins::FLOATS_PER_TRIANGLE;
-use crate::{CullingResult, Error, MaskedOcclusionCulling, TriList};
+use crate::{CullingResult, MaskedOcclusionCulling, TriList};
 
 /// The lists of the bins, in C's form.
 struct BinArguments {
@@ -99,11 +99,31 @@ pub unsafe extern "C" fn MOC_BinTrianglesChecked(
     unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
 }
 
+/// MOC_BinTriangles or MOC_BinTrianglesChecked of a mesh that a struct describes.
+///
+/// Errors: as there and as MOC_RenderMesh.
+///
 /// # Safety
-/// As MOC_BinTriangles, and [`MeshArguments::check`].
+/// As MOC_TestMesh. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data` of each for
+/// 9 * `capacity` floats; nobody else uses them meanwhile.
+#[unsafe(export_name = symbol!(MOC_BinMesh))]
+pub unsafe extern "C" fn MOC_BinMesh(
+    moc: *const MaskedOcclusionCulling,
+    mesh: *const MOC_Mesh,
+    lists: *mut MOC_TriList,
+    bins_w: u32,
+    bins_h: u32,
+    result: *mut i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
+}
+
+/// # Safety
+/// As MOC_BinTriangles, and [`Describe::check`].
 unsafe fn bin(
     moc: *const MaskedOcclusionCulling,
-    mesh: MeshArguments,
+    mesh: impl Describe,
     bins: BinArguments,
 ) -> Result<CullingResult, Refusal> {
     let BinArguments { lists, bins_w, bins_h } = bins;
@@ -112,18 +132,17 @@ unsafe fn bin(
     // SAFETY: the caller's contract.
     let mesh = unsafe { mesh.check(moc) }?;
     if lists.is_null() {
-        return Err(Refusal::new(Error::NullPointer, "lists is null"));
+        return Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "lists is null"));
     }
     // Bounds the product of the counts before any list is read.
-    moc.compute_bin_size(bins_w, bins_h).because(Error::InvalidSize, BINS)?;
+    with_buffer(moc)?.compute_bin_size(bins_w, bins_h).because(MOC_Status::MOC_STATUS_INVALID_SIZE, BINS)?;
     let count = bins_w as usize * bins_h as usize;
     // SAFETY: the caller's contract; the two structs have the same layout.
     let lists = unsafe { slice_mut(lists.cast::<TriList<'_>>(), count) }
-        .because(Error::InvalidLayout, "lists is misaligned")?;
+        .because(MOC_Status::MOC_STATUS_INVALID_LAYOUT, "lists is misaligned")?;
     if lists.iter().any(|list| list.capacity > 0 && list.data.is_null()) {
-        return Err(Refusal::new(Error::NullPointer, "a list has a capacity but no data"));
+        return Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "a list has a capacity but no data"));
     }
     lists.iter().try_for_each(|list| check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.capacity as usize))?;
-    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-    Ok(unsafe { moc.bin_triangles_unchecked(mesh.vertices, mesh.triangles, lists, bins_w, bins_h, &mesh.options) }?)
+    Ok(moc.bin_mesh(&mesh.mesh(), lists, bins_w, bins_h)?)
 }

@@ -1,12 +1,12 @@
 //! What changes the buffer: clearing, merging, drawing triangles and lists.
 
-use super::mesh::MeshArguments;
-use super::pointers::{check_length, idle_object_mut, object, objects, read};
+use super::mesh::{Describe, MOC_Mesh, MeshArguments};
+use super::pointers::{check_idle, check_length, idle_object_mut, object, objects, read, with_buffer};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{MOC_ScissorRect, MOC_TriList, MOC_VertexLayout};
 use crate::bins::FLOATS_PER_TRIANGLE;
-use crate::{CullingResult, Error, MaskedOcclusionCulling, ScissorRect, TriList};
+use crate::{CullingResult, MaskedOcclusionCulling, ScissorRect, TriList};
 
 const EMPTY: &str = "one of the objects has no buffer: call MOC_SetResolution first";
 
@@ -18,8 +18,13 @@ const EMPTY: &str = "one of the objects has no buffer: call MOC_SetResolution fi
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
 #[unsafe(export_name = symbol!(MOC_ClearBuffer))]
 pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MOC_Status {
-    // SAFETY: the caller's contract.
-    guard(|| Ok(unsafe { idle_object_mut(moc) }?.clear_buffer()?))
+    guard(|| {
+        // SAFETY: the caller's contract.
+        let moc = unsafe { idle_object_mut(moc) }?;
+        with_buffer(moc)?;
+        moc.clear_buffer();
+        Ok(())
+    })
 }
 
 /// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
@@ -40,13 +45,16 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
     guard(|| {
         if core::ptr::eq(moc, other) {
             // SAFETY: the caller's contract. No second reference to the same object is made.
-            return Ok(unsafe { object(other) }?.resolution().map(|_| ()).ok_or(Error::NoBuffer)?);
+            with_buffer(unsafe { object(other) }?)?;
+            return Ok(());
         }
         // SAFETY: the caller's contract, and the two are not the same.
         let moc = unsafe { idle_object_mut(moc) }?;
         // SAFETY: as above.
-        let other = unsafe { object(other) }.because(Error::NullPointer, "the other object is null")?;
-        moc.merge_buffer(other).because(Error::NoBuffer, EMPTY)
+        let other =
+            unsafe { object(other) }.because(MOC_Status::MOC_STATUS_NULL_POINTER, "the other object is null")?;
+        check_to_merge(moc, &[other])?;
+        Ok(moc.merge_buffer(other)?)
     })
 }
 
@@ -69,8 +77,20 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
         let mut others = unsafe { objects(others, count) }?;
         others.retain(|&other| !core::ptr::eq(other, moc));
         // SAFETY: the caller's contract, and none of the others is the same.
-        unsafe { idle_object_mut(moc) }?.merge_buffers(&others).because(Error::NoBuffer, EMPTY)
+        let moc = unsafe { idle_object_mut(moc) }?;
+        check_to_merge(moc, &others)?;
+        Ok(moc.merge_buffers(&others)?)
     })
+}
+
+/// Refuses objects that cannot be merged now.
+pub(super) fn check_to_merge(moc: &MaskedOcclusionCulling, others: &[&MaskedOcclusionCulling]) -> Result<(), Refusal> {
+    let check = |other: &MaskedOcclusionCulling| {
+        check_idle(other)?;
+        with_buffer(other).map(|_| ())
+    };
+    let all = with_buffer(moc).and_then(|_| others.iter().try_for_each(|other| check(other)));
+    all.because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)
 }
 
 /// Draws occluders: from now on they hide what is behind them. Nearest first is fastest and hides most.
@@ -161,15 +181,33 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
     unsafe { guard_result(result, || render(moc, mesh)) }
 }
 
+/// MOC_RenderTriangles or MOC_RenderTrianglesChecked of a mesh that a struct describes.
+///
+/// Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or a
+/// `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+///
 /// # Safety
-/// As MOC_RenderTriangles, and [`MeshArguments::check`].
-unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: MeshArguments) -> Result<CullingResult, Refusal> {
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for the
+/// number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+#[unsafe(export_name = symbol!(MOC_RenderMesh))]
+pub unsafe extern "C" fn MOC_RenderMesh(
+    moc: *mut MaskedOcclusionCulling,
+    mesh: *const MOC_Mesh,
+    result: *mut i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, || render(moc, mesh)) }
+}
+
+/// # Safety
+/// As MOC_RenderTriangles, and [`Describe::check`].
+unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: impl Describe) -> Result<CullingResult, Refusal> {
     // SAFETY: the caller's contract.
     let moc = unsafe { idle_object_mut(moc) }?;
     // SAFETY: the caller's contract.
     let mesh = unsafe { mesh.check(moc) }?;
-    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-    Ok(unsafe { moc.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
+    with_buffer(moc)?;
+    Ok(moc.render_mesh(&mesh.mesh()))
 }
 
 /// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
@@ -198,23 +236,25 @@ pub unsafe extern "C" fn MOC_RenderTrilist(
         // SAFETY: the caller's contract. Drawing changes the buffer through cells that any `&` may write.
         let moc = unsafe { object(moc) }?;
         if !list.is_null() && !list.is_aligned() {
-            return Err(Refusal::new(Error::InvalidLayout, "the list is misaligned"));
+            return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_LAYOUT, "the list is misaligned"));
         }
-        const NO_LIST: Refusal = Refusal::new(Error::NullPointer, "the list is null");
+        const NO_LIST: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the list is null");
         // SAFETY: null or aligned; the caller's contract; the two structs are laid out the same.
         let list = unsafe { list.cast::<TriList<'_>>().as_ref() }.ok_or(NO_LIST)?;
         if list.len > list.capacity {
-            return Err(Refusal::new(Error::InvalidSize, "the list has a count above its capacity"));
+            return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "the list has a count above its capacity"));
         }
         if list.len > 0 && list.data.is_null() {
-            return Err(Refusal::new(Error::NullPointer, "the list has triangles but no data"));
+            return Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the list has triangles but no data"));
         }
         check_length::<[f32; FLOATS_PER_TRIANGLE]>(list.len as usize)?;
+        check_idle(moc)?;
+        with_buffer(moc)?;
         // SAFETY: the caller's contract.
         let scissor = unsafe { read(scissor) }.map(ScissorRect::from);
         // SAFETY: the caller's contract: exclusive inside of the rectangle.
         unsafe { moc.render_trilist_shared(list, scissor) }.because(
-            Error::InvalidSize,
+            MOC_Status::MOC_STATUS_INVALID_SIZE,
             "the scissor rectangle is empty, outside the buffer, or not in multiples of 32 and 8 pixels",
         )
     })

@@ -2,17 +2,17 @@
 
 use std::alloc::Layout;
 
-use super::pointers::{check_out, idle_object_mut, object, read, write, write_size};
+use super::pointers::{check_out, idle_object_mut, object, read, read_size, with_buffer, write, write_size};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, done, guard};
 use super::types::{self, MOC_Implementation, MOC_Settings, MOC_UpdateRule, MOC_YAxis};
-use crate::{Allocator, Error, MaskedOcclusionCulling, Settings};
+use crate::{Allocator, MaskedOcclusionCulling, Settings};
 
 const DEFAULTS: MOC_Settings = MOC_Settings {
+    size: size_of::<MOC_Settings>() as u32,
     implementation: MOC_Implementation::MOC_AVX512 as i32,
     update_rule: MOC_UpdateRule::MOC_UPDATE_RULE_THREE_LAYER as i32,
     y_axis: MOC_YAxis::MOC_Y_AXIS_DOWN as i32,
-    precise_coverage: 1,
     statistics: 0,
     alloc: None,
     free: None,
@@ -21,23 +21,29 @@ const DEFAULTS: MOC_Settings = MOC_Settings {
 
 /// The memory of the object itself. Aligned as its buffers are, and a whole number of alignments, so that
 /// one callback serves both and may be C11's aligned_alloc.
-fn object_layout() -> Result<Layout, Error> {
+fn object_layout() -> Result<Layout, MOC_Status> {
     let layout = Layout::new::<MaskedOcclusionCulling>();
-    Ok(layout.align_to(64).map_err(|_| Error::OutOfMemory)?.pad_to_align())
+    Ok(layout.align_to(64).map_err(|_| MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?.pad_to_align())
 }
 
-/// Writes the default settings to `out`: those that MOC_Create takes for null.
+const SETTINGS_SIZE: Refusal =
+    Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_Settings)");
+
+/// Writes the default settings to `out`: those that MOC_Create takes for null. `out->size` is sizeof(MOC_Settings), set by the
+/// caller, and stays.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
 /// # Safety
-/// `out` is null or can be written.
+/// `out` is null, or can be read and written for the number of bytes given in its `size`.
 #[unsafe(export_name = symbol!(MOC_DefaultSettings))]
 pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Status {
     guard(|| {
         check_out(out)?;
-        // SAFETY: not null, and the caller's contract.
-        unsafe { write(out, DEFAULTS) };
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        let size = unsafe { read_size(out) }.filter(|&size| size >= size_of::<MOC_Settings>()).ok_or(SETTINGS_SIZE)?;
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
+        unsafe { write(out, MOC_Settings { size: size as u32, ..DEFAULTS }) };
         Ok(())
     })
 }
@@ -46,11 +52,11 @@ pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Stat
 /// allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
 /// caller gives the object back to MOC_Destroy.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_ENUM,
-/// MOC_STATUS_OUT_OF_MEMORY.
+/// Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_SIZE for a `size` that is too
+/// small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
 ///
 /// # Safety
-/// `settings` is null or can be read, `out` is null or can be written. The callbacks do what
+/// `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The callbacks do what
 /// MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
 #[unsafe(export_name = symbol!(MOC_Create))]
 pub unsafe extern "C" fn MOC_Create(
@@ -61,16 +67,24 @@ pub unsafe extern "C" fn MOC_Create(
         check_out(out)?;
         // SAFETY: not null, and the caller's contract.
         unsafe { write(out, core::ptr::null_mut()) };
-        // SAFETY: the caller's contract.
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        if unsafe { read_size(settings) }.is_some_and(|size| size < size_of::<MOC_Settings>()) {
+            return Err(SETTINGS_SIZE);
+        }
+        // SAFETY: null, or large enough according to its `size`; the caller's contract.
         let settings = unsafe { read(settings) }.unwrap_or(DEFAULTS);
-        types::flag(settings.precise_coverage, "precise_coverage is neither 0 nor 1")?;
         let allocator = match (settings.alloc, settings.free) {
             (None, None) => Allocator::SYSTEM,
             // SAFETY: the caller vouches for the callbacks, including `call_alloc`.
             (Some(alloc), Some(free)) => unsafe {
                 Allocator::from_callbacks(alloc, free).called_through(settings.call_alloc)
             },
-            _ => return Err(Refusal::new(Error::NullPointer, "alloc and free must both be set or both be null")),
+            _ => {
+                return Err(Refusal::new(
+                    MOC_Status::MOC_STATUS_NULL_POINTER,
+                    "alloc and free must both be set or both be null",
+                ));
+            }
         };
         let settings = Settings {
             implementation: types::implementation(settings.implementation)?,
@@ -79,7 +93,7 @@ pub unsafe extern "C" fn MOC_Create(
             allocator,
             statistics: types::flag(settings.statistics, "statistics is neither 0 nor 1")?,
         };
-        let moc = MaskedOcclusionCulling::new(settings);
+        let moc = MaskedOcclusionCulling::without_buffer(settings);
         let place = allocator.allocate(object_layout()?)?.cast::<MaskedOcclusionCulling>().as_ptr();
         // SAFETY: `place` is fresh memory of the object's layout; `out` as above.
         unsafe {
@@ -130,7 +144,11 @@ pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 #[unsafe(export_name = symbol!(MOC_SetResolution))]
 pub unsafe extern "C" fn MOC_SetResolution(moc: *mut MaskedOcclusionCulling, width: u32, height: u32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { idle_object_mut(moc) }?.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION))
+    guard(|| {
+        unsafe { idle_object_mut(moc) }?
+            .set_resolution(width, height)
+            .because(MOC_Status::MOC_STATUS_INVALID_SIZE, RESOLUTION)
+    })
 }
 
 /// Writes the width and height of the buffer in pixels.
@@ -150,7 +168,7 @@ pub unsafe extern "C" fn MOC_GetResolution(
         // SAFETY: the caller's contract.
         let moc = unsafe { object(moc) }?;
         // SAFETY: the caller's contract.
-        unsafe { write_size(width, height, moc.resolution().ok_or(Error::NoBuffer)) }
+        unsafe { write_size(width, height, with_buffer(moc).map(|moc| moc.resolution()).map_err(Refusal::from)) }
     })
 }
 
@@ -176,8 +194,11 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
     guard(|| {
         // SAFETY: the caller's contract.
         let moc = unsafe { object(moc) }?;
+        let size = with_buffer(moc)
+            .map_err(Refusal::from)
+            .and_then(|moc| moc.compute_bin_size(bins_w, bins_h).because(MOC_Status::MOC_STATUS_INVALID_SIZE, BINS));
         // SAFETY: the caller's contract.
-        unsafe { write_size(width, height, moc.compute_bin_size(bins_w, bins_h)) }.because(Error::InvalidSize, BINS)
+        unsafe { write_size(width, height, size) }
     })
 }
 
@@ -195,7 +216,7 @@ pub(super) const NEAR: &str = "the near plane is NaN or infinite";
 #[unsafe(export_name = symbol!(MOC_SetNearClipPlane))]
 pub unsafe extern "C" fn MOC_SetNearClipPlane(moc: *mut MaskedOcclusionCulling, near_w: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { object(moc) }?.set_near_shared(near_w).because(Error::InvalidNumber, NEAR))
+    guard(|| unsafe { object(moc) }?.set_near_shared(near_w).because(MOC_Status::MOC_STATUS_INVALID_NUMBER, NEAR))
 }
 
 /// Writes the near plane, in clip-space w.

@@ -36,6 +36,7 @@ static REFUSED: AtomicBool = AtomicBool::new(false);
 thread_local! {
     static LAST: Cell<MOC_Status> = const { Cell::new(MOC_Status::MOC_STATUS_OK) };
     static TELLING: Cell<bool> = const { Cell::new(false) };
+    static DOUBT: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
 /// From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with `user` as
@@ -77,7 +78,8 @@ pub(super) fn done() {
 /// Records and reports that the call of this name was refused. Returns its status.
 #[cold]
 pub(super) fn refused(function: &str, refusal: Refusal) -> MOC_Status {
-    let status = refusal.error.into();
+    let status = refusal.status;
+    let _ = DOUBT.try_with(Cell::take);
     tell(function, status, refusal.why());
     REFUSED.store(true, Relaxed);
     set_last(status);
@@ -91,6 +93,25 @@ pub(super) fn note(function: &str, doubt: impl FnOnce() -> Option<&'static str>)
         && let Some(what) = doubt()
     {
         tell(function, MOC_Status::MOC_STATUS_OK, what);
+    }
+}
+
+/// Notes that the call under way probably does not do what was intended, to be reported when it ends under the name of the
+/// exported function.
+#[inline]
+pub(super) fn doubt(doubt: impl FnOnce() -> Option<&'static str>) {
+    if LISTENING.load(Relaxed) {
+        let _ = DOUBT.try_with(|slot| slot.set(doubt()));
+    }
+}
+
+/// Reports what [`doubt`] noted.
+#[inline]
+pub(super) fn tell_doubt(function: fn() -> &'static str) {
+    if LISTENING.load(Relaxed)
+        && let Ok(Some(what)) = DOUBT.try_with(Cell::take)
+    {
+        tell(function(), MOC_Status::MOC_STATUS_OK, what);
     }
 }
 

@@ -33,6 +33,7 @@ pub use bins::*;
 pub use callbacks::*;
 pub use draw::*;
 pub use lifecycle::*;
+pub use mesh::*;
 pub use messages::*;
 pub use pool::*;
 pub use pool_calls::*;

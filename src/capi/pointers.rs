@@ -1,9 +1,10 @@
 //! From the caller's pointers to references and slices, with the checks that can be made.
 
 use super::refusal::{Because, Refusal};
-use crate::{Error, MaskedOcclusionCulling};
+use super::status::MOC_Status;
+use crate::MaskedOcclusionCulling;
 
-const NO_OBJECT: Refusal = Refusal::new(Error::NullPointer, "the object is null");
+const NO_OBJECT: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the object is null");
 
 /// # Safety
 /// Null or from `MOC_Create` and not destroyed, and nobody changes the object meanwhile.
@@ -31,9 +32,20 @@ pub(super) unsafe fn idle_object_mut<'a>(
     // SAFETY: the caller's contract. With nothing in flight the pool's threads do not access it, so `&mut` is the only
     // reference.
     unsafe {
-        object(moc)?.attachment().check_idle()?;
+        check_idle(object(moc)?)?;
         object_mut(moc)
     }
+}
+
+/// Refuses what would change or copy the buffer alongside the object's pool.
+pub(super) fn check_idle(moc: &MaskedOcclusionCulling) -> Result<(), MOC_Status> {
+    if moc.attachment().is_busy() { Err(MOC_Status::MOC_STATUS_BUSY) } else { Ok(()) }
+}
+
+/// The object, which the call needs to have a buffer.
+#[inline]
+pub(super) fn with_buffer(moc: &MaskedOcclusionCulling) -> Result<&MaskedOcclusionCulling, MOC_Status> {
+    if moc.has_buffer() { Ok(moc) } else { Err(MOC_Status::MOC_STATUS_NO_BUFFER) }
 }
 
 /// An array of objects.
@@ -46,22 +58,22 @@ pub(super) unsafe fn objects<'a>(
     count: u32,
 ) -> Result<Vec<&'a MaskedOcclusionCulling>, Refusal> {
     // SAFETY: the caller's contract.
-    let pointers =
-        unsafe { slice(objects, count as usize) }.because(Error::NullPointer, "the array of other objects is null")?;
+    let pointers = unsafe { slice(objects, count as usize) }
+        .because(MOC_Status::MOC_STATUS_NULL_POINTER, "the array of other objects is null")?;
     // SAFETY: the caller's contract.
     let object = |&moc: &_| unsafe { object(moc) };
     pointers
         .iter()
         .map(object)
         .collect::<Result<_, _>>()
-        .because(Error::NullPointer, "one of the other objects is null")
+        .because(MOC_Status::MOC_STATUS_NULL_POINTER, "one of the other objects is null")
 }
 
 /// `len` elements from `data`, which may be null when there are none.
 ///
 /// # Safety
 /// `data` is null or holds `len` elements that nobody changes for `'a`.
-pub(super) unsafe fn slice<'a, T>(data: *const T, len: usize) -> Result<&'a [T], Error> {
+pub(super) unsafe fn slice<'a, T>(data: *const T, len: usize) -> Result<&'a [T], MOC_Status> {
     check_array(data, len)?;
     if len == 0 {
         return Ok(&[]);
@@ -74,7 +86,7 @@ pub(super) unsafe fn slice<'a, T>(data: *const T, len: usize) -> Result<&'a [T],
 ///
 /// # Safety
 /// `data` is null or holds `len` elements that nobody else uses for `'a`.
-pub(super) unsafe fn slice_mut<'a, T>(data: *mut T, len: usize) -> Result<&'a mut [T], Error> {
+pub(super) unsafe fn slice_mut<'a, T>(data: *mut T, len: usize) -> Result<&'a mut [T], MOC_Status> {
     check_array(data, len)?;
     if len == 0 {
         return Ok(&mut []);
@@ -83,24 +95,24 @@ pub(super) unsafe fn slice_mut<'a, T>(data: *mut T, len: usize) -> Result<&'a mu
     Ok(unsafe { core::slice::from_raw_parts_mut(data, len) })
 }
 
-fn check_array<T>(data: *const T, len: usize) -> Result<(), Error> {
+fn check_array<T>(data: *const T, len: usize) -> Result<(), MOC_Status> {
     if len == 0 {
         return Ok(());
     }
     if data.is_null() {
-        return Err(Error::NullPointer);
+        return Err(MOC_Status::MOC_STATUS_NULL_POINTER);
     }
     if !data.is_aligned() {
-        return Err(Error::InvalidLayout);
+        return Err(MOC_Status::MOC_STATUS_INVALID_LAYOUT);
     }
     check_length::<T>(len)
 }
 
 /// Refuses more elements than an array can have: with 32-bit pointers, C's counts exceed that.
-pub(super) fn check_length<T>(len: usize) -> Result<(), Error> {
+pub(super) fn check_length<T>(len: usize) -> Result<(), MOC_Status> {
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
-        _ => Err(Error::InvalidSize),
+        _ => Err(MOC_Status::MOC_STATUS_INVALID_SIZE),
     }
 }
 
@@ -113,6 +125,15 @@ pub(super) unsafe fn read<T: Copy>(data: *const T) -> Option<T> {
     if data.is_null() { None } else { Some(unsafe { data.read_unaligned() }) }
 }
 
+/// The size with which a struct begins.
+///
+/// # Safety
+/// `data` is null or can be read for four bytes.
+pub(super) unsafe fn read_size<T>(data: *const T) -> Option<usize> {
+    // SAFETY: the caller's contract.
+    unsafe { read(data.cast::<u32>()) }.map(|size| size as usize)
+}
+
 /// # Safety
 /// `out` can be written.
 pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
@@ -122,7 +143,11 @@ pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
 
 /// Refuses a null out pointer.
 pub(super) fn check_out<T>(out: *mut T) -> Result<(), Refusal> {
-    if out.is_null() { Err(Refusal::new(Error::NullPointer, "the output pointer is null")) } else { Ok(()) }
+    if out.is_null() {
+        Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the output pointer is null"))
+    } else {
+        Ok(())
+    }
 }
 
 /// Writes a width and a height, or 0 by 0 on an error, which is returned.
@@ -132,15 +157,15 @@ pub(super) fn check_out<T>(out: *mut T) -> Result<(), Refusal> {
 pub(super) unsafe fn write_size(
     width: *mut u32,
     height: *mut u32,
-    size: Result<(u32, u32), Error>,
+    size: Result<(u32, u32), Refusal>,
 ) -> Result<(), Refusal> {
     check_out(width)?;
     check_out(height)?;
-    let (w, h) = size.unwrap_or((0, 0));
+    let (w, h) = *size.as_ref().unwrap_or(&(0, 0));
     // SAFETY: not null, and the caller's contract.
     unsafe {
         write(width, w);
         write(height, h);
     }
-    Ok(size.map(|_| ())?)
+    size.map(|_| ())
 }

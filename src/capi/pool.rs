@@ -4,13 +4,14 @@ use core::ffi::{c_char, c_void};
 use core::ptr::NonNull;
 
 use super::lifecycle::{NEAR, RESOLUTION};
-use super::pointers::{check_out, read, write, write_size};
+use super::pointers::{check_out, read, read_size, write, write_size};
 use super::pool_state::PoolState;
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, ThreadStart, ThreadpoolSettings};
 
 /// A pool of threads that draw into an object; see MOC_ThreadpoolCreate.
+#[derive(Debug)]
 pub struct MOC_Threadpool {
     pub(super) pool: CullingThreadpool,
     /// What later calls without their own matrix are drawn with.
@@ -19,7 +20,7 @@ pub struct MOC_Threadpool {
 
 impl MOC_Threadpool {
     fn new(settings: ThreadpoolSettings) -> Result<*mut Self, Error> {
-        let pool = CullingThreadpool::with_settings(settings)?;
+        let pool = CullingThreadpool::new(settings)?;
         Ok(Box::into_raw(Box::new(Self { pool, state: PoolState::default() })))
     }
 }
@@ -30,7 +31,7 @@ pub(super) const EMPTY: &str = "no buffer: call MOC_ThreadpoolSetBuffer first, w
 /// Null or from `MOC_ThreadpoolCreate` and not destroyed.
 pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_Threadpool, Refusal> {
     // SAFETY: the caller's contract.
-    unsafe { pool.as_ref() }.ok_or(Refusal::new(Error::NullPointer, "the pool is null"))
+    unsafe { pool.as_ref() }.ok_or(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the pool is null"))
 }
 
 /// Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number, counted from
@@ -38,7 +39,7 @@ pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_T
 pub type MOC_ThreadStart = Option<unsafe extern "C" fn(user: *mut c_void, number: u32)>;
 
 /// Settings of MOC_ThreadpoolCreateFrom. Zero the struct, then set `size` and whatever should differ from the defaults.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_ThreadpoolSettings {
     /// sizeof(MOC_ThreadpoolSettings).
@@ -81,7 +82,7 @@ impl MOC_ThreadpoolSettings {
     /// `thread_name` is null or a C string; `thread_start` may be called by any thread.
     unsafe fn to_rust(self) -> Result<ThreadpoolSettings, Refusal> {
         if self.reserved != 0 {
-            return Err(Refusal::new(Error::InvalidEnum, "reserved is not 0"));
+            return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "reserved is not 0"));
         }
         let mut settings = ThreadpoolSettings::default();
         let or = |value: u32, default: u32| if value == 0 { default } else { value };
@@ -162,10 +163,13 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
 ) -> MOC_Status {
     let settings = || {
         // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
-        let size =
-            unsafe { read(settings.cast::<u32>()) }.ok_or(Refusal::new(Error::NullPointer, "settings is null"))?;
-        if (size as usize) < size_of::<MOC_ThreadpoolSettings>() {
-            return Err(Refusal::new(Error::InvalidSize, "size is less than sizeof(MOC_ThreadpoolSettings)"));
+        let size = unsafe { read_size(settings) }
+            .ok_or(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "settings is null"))?;
+        if size < size_of::<MOC_ThreadpoolSettings>() {
+            return Err(Refusal::new(
+                MOC_Status::MOC_STATUS_INVALID_SIZE,
+                "size is less than sizeof(MOC_ThreadpoolSettings)",
+            ));
         }
         // SAFETY: not null, and large enough according to its `size`; the caller's contract.
         unsafe { read(settings).map_or(Ok(ThreadpoolSettings::default()), |settings| settings.to_rust()) }
@@ -184,7 +188,7 @@ unsafe fn create(
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let pool = MOC_Threadpool::new(settings()?)
-        .because(Error::InvalidSize, "bins_w, bins_h or max_jobs is 0, or threads is above 1024")?;
+        .because(MOC_Status::MOC_STATUS_INVALID_SIZE, "bins_w, bins_h or max_jobs is 0, or threads is above 1024")?;
     // SAFETY: as above.
     unsafe { write(out, pool) };
     Ok(())
@@ -322,7 +326,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 ) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
-        unsafe { write_size(bins_w, bins_h, handle(pool)?.pool.bin_count()).because(Error::NoBuffer, EMPTY) }
+        unsafe {
+            write_size(bins_w, bins_h, handle(pool)?.pool.bin_count().because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY))
+        }
     })
 }
 
@@ -344,12 +350,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     moc: *mut MaskedOcclusionCulling,
 ) -> MOC_Status {
     // SAFETY: the caller's contract; destroying an object detaches it from its pool first.
-    guard(|| unsafe {
-        handle(pool)?
-            .pool
-            .set_buffer_unowned(NonNull::new(moc))
-            .because(Error::Busy, "the object belongs to another pool")
-    })
+    guard(|| unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)).map_err(Refusal::from) })
 }
 
 /// MOC_SetResolution of the pool's object, after what was submitted is drawn.
@@ -365,8 +366,13 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
     height: u32,
 ) -> MOC_Status {
     // SAFETY: the caller's contract.
-    let done = || unsafe { handle(pool) }?.pool.set_resolution(width, height).because(Error::InvalidSize, RESOLUTION);
-    guard(|| done().because(Error::NoBuffer, EMPTY))
+    let done = || {
+        unsafe { handle(pool) }?
+            .pool
+            .set_resolution(width, height)
+            .because(MOC_Status::MOC_STATUS_INVALID_SIZE, RESOLUTION)
+    };
+    guard(|| done().because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY))
 }
 
 /// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane on the pool's object.
@@ -378,6 +384,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetNearClipPlane))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetNearClipPlane(pool: *const MOC_Threadpool, near: f32) -> MOC_Status {
     // SAFETY: the caller's contract.
-    let done = || unsafe { handle(pool) }?.pool.set_near_clip_plane(near).because(Error::InvalidNumber, NEAR);
-    guard(|| done().because(Error::NoBuffer, EMPTY))
+    let done =
+        || unsafe { handle(pool) }?.pool.set_near_clip_plane(near).because(MOC_Status::MOC_STATUS_INVALID_NUMBER, NEAR);
+    guard(|| done().because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY))
 }

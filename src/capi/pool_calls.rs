@@ -1,6 +1,7 @@
 //! Draws and queries of a pool.
 
-use super::mesh::{CheckedMesh, MeshArguments};
+use super::draw::check_to_merge;
+use super::mesh::{CheckedMesh, Describe, MOC_Mesh};
 use super::messages::note;
 use super::pointers::{check_out, objects, read, slice_mut};
 use super::pool::{EMPTY, MOC_Threadpool, handle};
@@ -8,25 +9,24 @@ use super::query::odd_rectangle;
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result};
 use super::types::{self, MOC_VertexLayout};
-use crate::{CullingResult, Error, MaskedOcclusionCulling, VertexLayout};
+use crate::{CullingResult, MaskedOcclusionCulling, VertexLayout};
 
 impl MOC_Threadpool {
     /// # Safety
-    /// As [`MeshArguments::check`].
-    unsafe fn check<'a>(&self, arguments: MeshArguments) -> Result<CheckedMesh<'a>, Refusal> {
+    /// As [`Describe::check`].
+    unsafe fn check<'a>(&self, mesh: impl Describe) -> Result<CheckedMesh<'a>, Refusal> {
         // SAFETY: the caller's contract.
-        self.pool.with_object(|moc| Ok(unsafe { arguments.check(moc) })).because(Error::NoBuffer, EMPTY)?
+        let checked = self.pool.with_object(|moc| Ok::<_, Refusal>(unsafe { mesh.check(moc) }));
+        checked.because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)?
     }
 
     /// # Safety
-    /// As MOC_ThreadpoolRenderMesh and [`MeshArguments::check`].
-    unsafe fn render(&self, arguments: MeshArguments) -> Result<(), Refusal> {
+    /// As MOC_ThreadpoolRenderMesh and [`Describe::check`].
+    unsafe fn render(&self, mesh: impl Describe) -> Result<(), Refusal> {
         // SAFETY: the caller's contract.
-        match unsafe { self.check(arguments) } {
+        match unsafe { self.check(mesh) } {
             // SAFETY: the caller's contract.
-            Ok(mesh) => {
-                Ok(unsafe { self.pool.render_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
-            }
+            Ok(mesh) => Ok(unsafe { self.pool.render_mesh(&mesh.mesh()) }?),
             Err(refusal) => {
                 self.pool.refuse();
                 Err(refusal)
@@ -35,19 +35,17 @@ impl MOC_Threadpool {
     }
 
     /// # Safety
-    /// As [`MeshArguments::check`].
-    unsafe fn test(&self, arguments: MeshArguments) -> Result<CullingResult, Refusal> {
+    /// As [`Describe::check`].
+    unsafe fn test(&self, mesh: impl Describe) -> Result<CullingResult, Refusal> {
         // SAFETY: the caller's contract.
-        unsafe {
-            let mesh = self.check(arguments)?;
-            Ok(self.pool.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options)?)
-        }
+        let mesh = unsafe { self.check(mesh) }?;
+        Ok(self.pool.test_mesh(&mesh.mesh())?)
     }
 }
 
 /// Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
 /// vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
-/// so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
+/// so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both with the mesh.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool.
 ///
@@ -80,7 +78,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
         let (pool, layout) = unsafe { (handle(pool)?, read(layout)) };
         let layout = layout.unwrap_or(VertexLayout::CLIP_SPACE.into());
         if layout.stride < 0 {
-            return Err(Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative"));
+            return Err(Refusal::new(
+                MOC_Status::MOC_STATUS_INVALID_LAYOUT,
+                "the stride of the vertex layout is negative",
+            ));
         }
         pool.state.change(|state| state.layout = layout);
         Ok(())
@@ -97,15 +98,17 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
 #[unsafe(export_name = symbol!(MOC_ThreadpoolClearBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool) }?.pool.clear_buffer().because(Error::NoBuffer, EMPTY))
+    guard(|| unsafe { handle(pool) }?.pool.clear_buffer().because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY))
 }
 
-/// MOC_ThreadpoolRenderMesh with the matrix and the vertex layout that the calling thread has set.
+/// MOC_RenderTriangles with the matrix and the vertex layout that the calling thread has set, as MOC_ThreadpoolRenderMesh: it
+/// returns at once.
 ///
-/// Errors: as there.
+/// Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
 ///
 /// # Safety
-/// As MOC_ThreadpoolRenderMesh.
+/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
+/// unchanged as those of MOC_ThreadpoolRenderMesh.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     pool: *const MOC_Threadpool,
@@ -125,134 +128,32 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
 }
 
 /// Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
-/// no longer holds. The arguments are those of MOC_RenderTriangles; matrix and layout are copied. The near plane is the
-/// object's.
+/// no longer holds. The struct, its matrix and its layout are copied. The near plane is the object's.
 ///
-/// Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
+/// Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
-/// unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs`
-/// later calls do. `model_to_clip` and `layout` are null or can be read.
+/// As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what it points to
+/// as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or
+/// MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMesh))]
-pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(
-    pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    triangles: *const u32,
-    n_triangles: i32,
-    model_to_clip: *const f32,
-    winding: i32,
-    clip_planes: i32,
-    layout: *const MOC_VertexLayout,
-) -> MOC_Status {
-    let mesh = MeshArguments {
-        vertices,
-        vertex_floats: None,
-        triangles,
-        n_triangles,
-        model_to_clip,
-        winding,
-        clip_planes,
-        layout,
-    };
+pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(pool: *const MOC_Threadpool, mesh: *const MOC_Mesh) -> MOC_Status {
     // SAFETY: the caller's contract.
     guard(|| unsafe { handle(pool)?.render(mesh) })
 }
 
-/// As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices`: an index of a vertex
-/// that is not wholly within it is an error, and nothing is drawn.
-///
-/// Errors: as MOC_RenderTrianglesChecked.
-///
-/// # Safety
-/// As MOC_ThreadpoolRenderMesh, but `vertices` can be read for `vertex_floats` floats whatever the indices are.
-#[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMeshChecked))]
-pub unsafe extern "C" fn MOC_ThreadpoolRenderMeshChecked(
-    pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    vertex_floats: usize,
-    triangles: *const u32,
-    n_triangles: i32,
-    model_to_clip: *const f32,
-    winding: i32,
-    clip_planes: i32,
-    layout: *const MOC_VertexLayout,
-) -> MOC_Status {
-    let mesh = MeshArguments {
-        vertices,
-        vertex_floats: Some(vertex_floats),
-        triangles,
-        n_triangles,
-        model_to_clip,
-        winding,
-        clip_planes,
-        layout,
-    };
-    // SAFETY: the caller's contract.
-    guard(|| unsafe { handle(pool)?.render(mesh) })
-}
-
-/// MOC_TestTriangles against what has been drawn so far.
+/// MOC_TestMesh against what has been drawn so far.
 ///
 /// Errors: as there.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+/// As MOC_ThreadpoolWakeThreads and MOC_TestMesh.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolTestMesh))]
 pub unsafe extern "C" fn MOC_ThreadpoolTestMesh(
     pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    triangles: *const u32,
-    n_triangles: i32,
-    model_to_clip: *const f32,
-    winding: i32,
-    clip_planes: i32,
-    layout: *const MOC_VertexLayout,
+    mesh: *const MOC_Mesh,
     result: *mut i32,
 ) -> MOC_Status {
-    let mesh = MeshArguments {
-        vertices,
-        vertex_floats: None,
-        triangles,
-        n_triangles,
-        model_to_clip,
-        winding,
-        clip_planes,
-        layout,
-    };
-    // SAFETY: the caller's contract.
-    unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
-}
-
-/// MOC_TestTrianglesChecked against what has been drawn so far.
-///
-/// Errors: as there.
-///
-/// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_TestTrianglesChecked. `result` is null or can be written.
-#[unsafe(export_name = symbol!(MOC_ThreadpoolTestMeshChecked))]
-pub unsafe extern "C" fn MOC_ThreadpoolTestMeshChecked(
-    pool: *const MOC_Threadpool,
-    vertices: *const f32,
-    vertex_floats: usize,
-    triangles: *const u32,
-    n_triangles: i32,
-    model_to_clip: *const f32,
-    winding: i32,
-    clip_planes: i32,
-    layout: *const MOC_VertexLayout,
-    result: *mut i32,
-) -> MOC_Status {
-    let mesh = MeshArguments {
-        vertices,
-        vertex_floats: Some(vertex_floats),
-        triangles,
-        n_triangles,
-        model_to_clip,
-        winding,
-        clip_planes,
-        layout,
-    };
     // SAFETY: the caller's contract.
     unsafe { guard_result(result, || handle(pool)?.test(mesh)) }
 }
@@ -276,8 +177,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     let query = || {
         check_out(result)?;
         // SAFETY: the caller's contract.
-        let answer =
-            unsafe { handle(pool) }?.pool.test_rect(xmin, ymin, xmax, ymax, wmin).because(Error::NoBuffer, EMPTY)?;
+        let answer = unsafe { handle(pool) }?
+            .pool
+            .test_rect(xmin, ymin, xmax, ymax, wmin)
+            .because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)?;
         if answer == CullingResult::Visible {
             note("MOC_ThreadpoolTestRect", || odd_rectangle([xmin, ymin, xmax, ymax, wmin]));
         }
@@ -287,7 +190,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     unsafe { guard_result(result, query) }
 }
 
-/// MOC_ThreadpoolTestMesh with the matrix and the vertex layout that the calling thread has set.
+/// MOC_TestTriangles with the matrix and the vertex layout that the calling thread has set, against what has been drawn so far.
 ///
 /// Errors: as there.
 ///
@@ -332,10 +235,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
         let pool = &unsafe { handle(pool) }?.pool;
         let flip = types::flag(flip_y, "flip_y is neither 0 nor 1")?;
         // SAFETY: the caller's contract.
-        let out = |pixels| unsafe { slice_mut(out, pixels) };
+        let out = |pixels| unsafe { slice_mut(out, pixels) }.map_err(Refusal::from);
         pool.with_pixels(out, flip)
-            .because(Error::NoBuffer, EMPTY)
-            .because(Error::InvalidLayout, "out is not aligned to 4 bytes")
+            .because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)
+            .because(MOC_Status::MOC_STATUS_INVALID_LAYOUT, "out is not aligned to 4 bytes")
     })
 }
 
@@ -356,7 +259,14 @@ pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     guard(|| {
         // SAFETY: the caller's contract.
         let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
+        // With itself changes nothing, even while it is being drawn into.
+        pool.pool
+            .with_object(|moc| {
+                let others: Vec<_> = others.iter().copied().filter(|&other| !core::ptr::eq(other, moc)).collect();
+                Ok::<_, Refusal>(check_to_merge(moc, &others))
+            })
+            .because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)??;
         // SAFETY: the caller's contract.
-        unsafe { pool.pool.merge_buffers(&others) }.because(Error::NoBuffer, EMPTY)
+        unsafe { pool.pool.merge_buffers(&others) }.because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)
     })
 }

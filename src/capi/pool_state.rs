@@ -8,7 +8,7 @@ use super::mesh::MeshArguments;
 use super::types::MOC_VertexLayout;
 use crate::VertexLayout;
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub matrix: Option<[f32; 16]>,
     pub layout: MOC_VertexLayout,
@@ -38,6 +38,7 @@ impl State {
 }
 
 /// What was set on a pool.
+#[derive(Debug)]
 pub(super) struct PoolState {
     /// Set by any thread, most recently: used by threads that have never set anything. Its address identifies the pool.
     last: Arc<Mutex<State>>,

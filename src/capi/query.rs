@@ -1,13 +1,13 @@
 //! What reads the buffer: tests, depth, statistics.
 
-use super::mesh::MeshArguments;
+use super::mesh::{Describe, MOC_Mesh, MeshArguments};
 use super::messages::note;
-use super::pointers::{check_out, object, slice_mut, write};
+use super::pointers::{check_idle, check_out, object, read_size, slice_mut, with_buffer, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard, guard_result, guard_result_as_set};
 use super::types::{self, MOC_Statistics, MOC_VertexLayout};
 use crate::float_environment::{self, in_default_environment};
-use crate::{CullingResult, Error, MaskedOcclusionCulling};
+use crate::{CullingResult, MaskedOcclusionCulling};
 
 /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
 /// same depth?
@@ -88,15 +88,31 @@ pub unsafe extern "C" fn MOC_TestTrianglesChecked(
     unsafe { guard_result(result, || test(moc, mesh)) }
 }
 
+/// MOC_TestTriangles or MOC_TestTrianglesChecked of a mesh that a struct describes.
+///
+/// Errors: as MOC_RenderMesh, except MOC_STATUS_BUSY.
+///
 /// # Safety
-/// As MOC_TestTriangles, and [`MeshArguments::check`].
-unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: MeshArguments) -> Result<CullingResult, Refusal> {
+/// As MOC_RenderMesh, but other threads may query `moc` meanwhile.
+#[unsafe(export_name = symbol!(MOC_TestMesh))]
+pub unsafe extern "C" fn MOC_TestMesh(
+    moc: *const MaskedOcclusionCulling,
+    mesh: *const MOC_Mesh,
+    result: *mut i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    unsafe { guard_result(result, || test(moc, mesh)) }
+}
+
+/// # Safety
+/// As MOC_TestTriangles, and [`Describe::check`].
+unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: impl Describe) -> Result<CullingResult, Refusal> {
     // SAFETY: the caller's contract.
     let moc = unsafe { object(moc) }?;
     // SAFETY: the caller's contract.
     let mesh = unsafe { mesh.check(moc) }?;
-    // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-    Ok(unsafe { moc.test_triangles_unchecked(mesh.vertices, mesh.triangles, &mesh.options) }?)
+    with_buffer(moc)?;
+    Ok(moc.test_mesh(&mesh.mesh()))
 }
 
 /// Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
@@ -134,7 +150,7 @@ pub unsafe extern "C" fn MOC_TestRect(
     let query = || {
         check_out(result)?;
         // SAFETY: the caller's contract.
-        let answer = unsafe { object(moc) }?.test_rect(xmin, ymin, xmax, ymax, wmin)?;
+        let answer = with_buffer(unsafe { object(moc) }?)?.test_rect(xmin, ymin, xmax, ymax, wmin);
         if answer == CullingResult::Visible {
             note("MOC_TestRect", || odd_rectangle([xmin, ymin, xmax, ymax, wmin]));
         }
@@ -226,31 +242,38 @@ unsafe fn depth(
     let moc = unsafe { object(moc) }?;
     check_out(out)?;
     let flip_y = types::flag(flip_y, "flip_y is neither 0 nor 1")?;
-    let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
+    let (width, height) = with_buffer(moc)?.resolution();
     let pixels = width as usize * height as usize;
     if floats.is_some_and(|floats| floats < pixels) {
-        return Err(Refusal::new(Error::InvalidSize, "out_floats is less than width times height"));
+        return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "out_floats is less than width times height"));
     }
+    check_idle(moc)?;
     // SAFETY: at least `pixels` floats, as just checked or by the caller's contract.
-    let out = unsafe { slice_mut(out, pixels) }.because(Error::InvalidLayout, "out is not aligned to 4 bytes")?;
+    let out = unsafe { slice_mut(out, pixels) }
+        .because(MOC_Status::MOC_STATUS_INVALID_LAYOUT, "out is not aligned to 4 bytes")?;
     Ok(moc.compute_pixel_depth_buffer(out, flip_y)?)
 }
 
-/// Writes what was counted since the object was made; nothing sets the counts back.
+/// Writes what was counted since the object was made; nothing sets the counts back. `out->size` is sizeof(MOC_Statistics), set by
+/// the caller.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
-/// written.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or can be read
+/// and written for the number of bytes given in its `size`.
 #[unsafe(export_name = symbol!(MOC_GetStatistics))]
 pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, out: *mut MOC_Statistics) -> MOC_Status {
     guard(|| {
         // SAFETY: the caller's contract.
         let moc = unsafe { object(moc) }?;
         check_out(out)?;
-        // SAFETY: not null, and the caller's contract.
-        unsafe { write(out, moc.statistics().into()) };
+        const SIZE: Refusal =
+            Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_Statistics)");
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        let size = unsafe { read_size(out) }.filter(|&size| size >= size_of::<MOC_Statistics>()).ok_or(SIZE)?;
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
+        unsafe { write(out, MOC_Statistics::new(size as u32, moc.statistics())) };
         Ok(())
     })
 }
@@ -261,7 +284,8 @@ pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, o
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// As MOC_GetStatistics.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
+/// written.
 #[unsafe(export_name = symbol!(MOC_GetDroppedTriangles))]
 pub unsafe extern "C" fn MOC_GetDroppedTriangles(moc: *const MaskedOcclusionCulling, out: *mut i64) -> MOC_Status {
     guard(|| {

@@ -3,42 +3,49 @@
 use core::ffi::{CStr, c_char};
 use std::path::Path;
 
-use super::mesh::MeshArguments;
-use super::pointers::{check_out, object, slice, write};
+use super::mesh::{Describe, MOC_Mesh, MOC_UNCHECKED, MeshArguments};
+use super::pointers::{check_out, object, read_size, slice, with_buffer, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
-use crate::source::Mesh;
-use crate::{DrawOptions, Error, MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
+use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
 /// No answer is known, in recordings.
 pub const MOC_RESULT_UNKNOWN: i32 = -1;
 
 /// What a recorded call is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_RecordedCallKind {
-    /// MOC_RenderTriangles.
+    /// MOC_RenderTriangles or MOC_RenderMesh.
     MOC_RECORDED_RENDER_TRIANGLES = 0,
     /// MOC_TestRect.
     MOC_RECORDED_TEST_RECT = 1,
-    /// MOC_TestTriangles.
+    /// MOC_TestTriangles or MOC_TestMesh.
     MOC_RECORDED_TEST_TRIANGLES = 2,
     /// MOC_ClearBuffer.
     MOC_RECORDED_CLEAR_BUFFER = 3,
 }
 
-const NO_RECORDING: Refusal = Refusal::new(Error::NullPointer, "the recording is null");
-const NO_CALL: Refusal = Refusal::new(Error::IndexOutOfRange, "index is not below num_calls");
+const NO_RECORDING: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the recording is null");
+const NO_CALL: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE, "index is not below num_calls");
 
 /// A recording that was read; see MOC_RecordingLoad.
+#[derive(Debug)]
 pub struct MOC_Recording {
     recording: Recording,
+    /// The layouts and the meshes of the calls in their order, where a call has one. The meshes point into the recording and to
+    /// the layouts, neither of which changes.
+    _layouts: Vec<Option<MOC_VertexLayout>>,
+    meshes: Vec<Option<MOC_Mesh>>,
 }
 
 /// What a recording begins with.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_RecordingInfo {
+    /// sizeof(MOC_RecordingInfo).
+    pub size: u32,
     /// The near plane, in clip-space w.
     pub near_clip_plane: f32,
     /// In pixels.
@@ -49,32 +56,23 @@ pub struct MOC_RecordingInfo {
     pub num_calls: u32,
 }
 
-/// A recorded call. What its kind does not have is zero. The pointers stay right until the recording is destroyed.
-#[derive(Clone, Copy)]
+/// A recorded call.
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_RecordedCall {
+    /// sizeof(MOC_RecordedCall).
+    pub size: u32,
     /// A MOC_RecordedCallKind.
     pub kind: i32,
     /// The MOC_CullingResult that was answered, or MOC_RESULT_UNKNOWN.
     pub result: i32,
-    /// Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min.
+    /// Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Zeros otherwise.
     pub rect: [f32; 5],
-    /// Of meshes: the arguments of the call, and the length of the vertices in floats. The matrix is null where there is none.
-    pub vertices: *const f32,
-    /// As above.
+    /// Of draws and tests of triangles: their mesh, which MOC_RenderMesh and MOC_TestMesh take. Null otherwise. It stays right
+    /// until the recording is destroyed.
+    pub mesh: *const MOC_Mesh,
+    /// How many floats there are from `mesh->vertices` on.
     pub vertex_floats: usize,
-    /// As above.
-    pub triangles: *const u32,
-    /// As above.
-    pub n_triangles: i32,
-    /// As above.
-    pub model_to_clip: *const f32,
-    /// As above.
-    pub winding: i32,
-    /// As above.
-    pub clip_planes: i32,
-    /// As above.
-    pub layout: MOC_VertexLayout,
 }
 
 /// Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
@@ -91,9 +89,9 @@ pub struct MOC_RecordedCall {
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
     let start = || -> Result<(), Refusal> {
-        unsafe { Ok(object(moc)?.recorder_start(self::path(path)?).map_err(Error::from)?) }
+        unsafe { Ok(with_buffer(object(moc)?)?.recorder_start(self::path(path)?).map_err(Refusal::from)?) }
     };
-    guard(|| start().because(Error::Busy, "a recording is under way already"))
+    guard(|| start().because(MOC_Status::MOC_STATUS_BUSY, "a recording is under way already"))
 }
 
 /// Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
@@ -105,12 +103,11 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
 #[unsafe(export_name = symbol!(MOC_RecorderStop))]
 pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { Ok(object(moc)?.recorder_stop().map_err(Error::from)?) })
+    guard(|| unsafe { Ok(object(moc)?.recorder_stop().map_err(Refusal::from)?) })
 }
 
-/// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. Note the order of
-/// `clip_planes` and `winding`, which is that of the class that engines know. `result`: a MOC_CullingResult, or
-/// MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+/// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. `result`: a MOC_CullingResult,
+/// or MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
 ///
 /// Errors: those of MOC_RenderTriangles; nothing is recorded.
 ///
@@ -123,36 +120,54 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
     triangles: *const u32,
     n_triangles: i32,
     model_to_clip: *const f32,
-    clip_planes: i32,
     winding: i32,
+    clip_planes: i32,
     layout: *const MOC_VertexLayout,
     result: i32,
 ) -> MOC_Status {
-    guard(|| {
-        // SAFETY: the caller's contract.
-        let moc = unsafe { object(moc) }?;
-        moc.buffer()?;
-        let mesh = MeshArguments {
-            vertices,
-            vertex_floats: None,
-            triangles,
-            n_triangles,
-            model_to_clip,
-            winding,
-            clip_planes,
-            layout,
-        };
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { mesh.check(moc) }?;
-        let result = match result {
-            MOC_RESULT_UNKNOWN => None,
-            result => Some(types::culling_result(result)?),
-        };
-        // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-        let mesh = unsafe { Mesh::new(mesh.vertices, mesh.triangles, &mesh.options) };
-        moc.recorder().render_triangles(result, &mesh);
-        Ok(())
-    })
+    let mesh = MeshArguments {
+        vertices,
+        vertex_floats: None,
+        triangles,
+        n_triangles,
+        model_to_clip,
+        winding,
+        clip_planes,
+        layout,
+    };
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { record(moc, mesh, result) })
+}
+
+/// MOC_RecordRenderTriangles of a mesh that a struct describes.
+///
+/// Errors: those of MOC_RenderMesh; nothing is recorded.
+///
+/// # Safety
+/// That of MOC_RenderMesh; other threads may use `moc` as they may during a query.
+#[unsafe(export_name = symbol!(MOC_RecordMesh))]
+pub unsafe extern "C" fn MOC_RecordMesh(
+    moc: *const MaskedOcclusionCulling,
+    mesh: *const MOC_Mesh,
+    result: i32,
+) -> MOC_Status {
+    // SAFETY: the caller's contract.
+    guard(|| unsafe { record(moc, mesh, result) })
+}
+
+/// # Safety
+/// As MOC_RecordRenderTriangles, and [`Describe::check`].
+unsafe fn record(moc: *const MaskedOcclusionCulling, mesh: impl Describe, result: i32) -> Result<(), Refusal> {
+    // SAFETY: the caller's contract.
+    let moc = with_buffer(unsafe { object(moc) }?)?;
+    // SAFETY: the caller's contract.
+    let mesh = unsafe { mesh.check(moc) }?;
+    let result = match result {
+        MOC_RESULT_UNKNOWN => None,
+        result => Some(types::culling_result(result)?),
+    };
+    moc.recorder().render_triangles(result, &mesh.mesh());
+    Ok(())
 }
 
 /// Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
@@ -166,7 +181,7 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
 #[unsafe(export_name = symbol!(MOC_RecordingLoad))]
 pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut MOC_Recording) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?).map_err(Error::from)?)) })
+    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?).map_err(Refusal::from)?)) })
 }
 
 /// The same of a file that was read into memory, which is not needed afterwards.
@@ -184,8 +199,8 @@ pub unsafe extern "C" fn MOC_RecordingFromMemory(
     // SAFETY: the caller's contract.
     guard(|| unsafe {
         load(out, || {
-            Ok(Recording::from_bytes(slice(bytes, size).because(Error::NullPointer, "bytes is null")?)
-                .map_err(Error::from)?)
+            Ok(Recording::from_bytes(slice(bytes, size).because(MOC_Status::MOC_STATUS_NULL_POINTER, "bytes is null")?)
+                .map_err(Refusal::from)?)
         })
     })
 }
@@ -205,12 +220,12 @@ pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> 
     })
 }
 
-/// Writes to `out` what the recording begins with.
+/// Writes to `out` what the recording begins with. `out->size` is sizeof(MOC_RecordingInfo), set by the caller.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
 /// # Safety
-/// `recording` is null or a live one, `out` is null or can be written.
+/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
 #[unsafe(export_name = symbol!(MOC_RecordingGetInfo))]
 pub unsafe extern "C" fn MOC_RecordingGetInfo(
     recording: *const MOC_Recording,
@@ -220,25 +235,31 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
         check_out(out)?;
         // SAFETY: the caller's contract.
         let recording = unsafe { &recording.as_ref().ok_or(NO_RECORDING)?.recording };
+        const SIZE: Refusal =
+            Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_RecordingInfo)");
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        let size = unsafe { read_size(out) }.filter(|&size| size >= size_of::<MOC_RecordingInfo>()).ok_or(SIZE)?;
         let info = MOC_RecordingInfo {
+            size: size as u32,
             near_clip_plane: recording.near_clip_plane,
             width: recording.resolution.0,
             height: recording.resolution.1,
             num_calls: recording.calls.len() as u32,
         };
-        // SAFETY: not null, and the caller's contract.
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
         unsafe { write(out, info) };
         Ok(())
     })
 }
 
-/// Writes the call number `index` to `out`, counted from 0. What its pointers name belongs to the recording and lives as
-/// long.
+/// Writes the call number `index` to `out`, counted from 0. `out->size` is sizeof(MOC_RecordedCall), set by the caller. What its
+/// pointers name belongs to the recording and lives as long.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too small; nothing
+/// is written.
 ///
 /// # Safety
-/// `recording` is null or a live one, `out` is null or can be written.
+/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
 #[unsafe(export_name = symbol!(MOC_RecordingGetCall))]
 pub unsafe extern "C" fn MOC_RecordingGetCall(
     recording: *const MOC_Recording,
@@ -248,10 +269,15 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
     guard(|| {
         check_out(out)?;
         // SAFETY: the caller's contract.
-        let MOC_Recording { recording } = unsafe { recording.as_ref() }.ok_or(NO_RECORDING)?;
+        let MOC_Recording { recording, meshes, .. } = unsafe { recording.as_ref() }.ok_or(NO_RECORDING)?;
+        const SIZE: Refusal =
+            Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_RecordedCall)");
+        // SAFETY: the caller's contract. The size is the first field, and nothing beyond it is read.
+        let size = unsafe { read_size(out) }.filter(|&size| size >= size_of::<MOC_RecordedCall>()).ok_or(SIZE)?;
         let call = recording.calls.get(index as usize).ok_or(NO_CALL)?;
-        // SAFETY: not null, and the caller's contract.
-        unsafe { write(out, in_c(call)) };
+        let mesh = meshes[index as usize].as_ref();
+        // SAFETY: not null, and large enough according to its `size`; the caller's contract.
+        unsafe { write(out, in_c(size as u32, call, mesh)) };
         Ok(())
     })
 }
@@ -260,7 +286,7 @@ pub unsafe extern "C" fn MOC_RecordingGetCall(
 /// `path` is null or ends with a zero.
 unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Refusal> {
     if path.is_null() {
-        return Err(Refusal::new(Error::NullPointer, "path is null"));
+        return Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "path is null"));
     }
     // SAFETY: not null, and the caller's contract.
     let path = unsafe { CStr::from_ptr(path) };
@@ -268,7 +294,7 @@ unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Refusal> {
     let path: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(path.to_bytes());
     // Not the program's or the system's code page: those cannot name every file.
     #[cfg(not(unix))]
-    let path = path.to_str().map_err(|_| Error::File)?;
+    let path = path.to_str().map_err(|_| MOC_Status::MOC_STATUS_FILE)?;
     Ok(Path::new(path))
 }
 
@@ -279,50 +305,60 @@ unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recor
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let recording = load()?;
+    let layout = |call| recorded_mesh(call).map(|mesh| mesh.space.layout().into());
+    let layouts: Vec<Option<MOC_VertexLayout>> = recording.calls.iter().map(layout).collect();
+    let meshes = recording.calls.iter().zip(&layouts);
+    let meshes = meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?))).collect();
     // SAFETY: as above.
-    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording }))) };
+    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, _layouts: layouts, meshes }))) };
     Ok(())
 }
 
-fn in_c(call: &RecordedCall) -> MOC_RecordedCall {
-    let plain = MOC_RecordedCall {
-        kind: MOC_RecordedCallKind::MOC_RECORDED_CLEAR_BUFFER as i32,
-        result: call.result().map_or(MOC_RESULT_UNKNOWN, |result| result as i32),
-        rect: [0.0; 5],
-        vertices: core::ptr::null(),
-        vertex_floats: 0,
-        triangles: core::ptr::null(),
-        n_triangles: 0,
-        model_to_clip: core::ptr::null(),
-        winding: 0,
-        clip_planes: 0,
-        layout: MOC_VertexLayout { stride: 0, offset_y: 0, offset_zw: 0 },
-    };
-    let mesh = |kind: MOC_RecordedCallKind, mesh: &RecordedMesh| {
-        let DrawOptions { model_to_clip, winding, clip_planes } = &mesh.options;
-        // A matrix lies there as C has it.
-        let matrix = model_to_clip.as_ref().map(AsRef::<[f32; 16]>::as_ref);
-        MOC_RecordedCall {
-            kind: kind as i32,
-            vertices: mesh.vertices.as_ptr(),
-            vertex_floats: mesh.vertices.len(),
-            triangles: mesh.triangles.as_ptr(),
-            n_triangles: (mesh.triangles.len() / 3) as i32,
-            model_to_clip: matrix.map_or(core::ptr::null(), |matrix| matrix.as_ptr()),
-            winding: *winding as i32,
-            clip_planes: clip_planes.bits() as i32,
-            layout: mesh.layout.into(),
-            ..plain
-        }
-    };
+/// The recorded mesh of a call that has one.
+fn recorded_mesh(call: &RecordedCall) -> Option<&RecordedMesh> {
     match call {
-        RecordedCall::ClearBuffer => plain,
+        RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh) => Some(mesh),
+        RecordedCall::ClearBuffer | RecordedCall::TestRect(_) => None,
+    }
+}
+
+/// A mesh of a recording in C's form, which points into the recording and to its layout.
+fn described(mesh: &RecordedMesh, layout: &MOC_VertexLayout) -> MOC_Mesh {
+    let count = mesh.vertices().map_or(0, |vertices| vertices.len());
+    MOC_Mesh {
+        size: size_of::<MOC_Mesh>() as u32,
+        index_size: 4,
+        vertices: mesh.vertices.as_ptr(),
+        indices: mesh.triangles.as_ptr().cast(),
+        vertex_count: count.min(MOC_UNCHECKED as usize - 1) as u32,
+        triangle_count: (mesh.triangles.len() / 3) as u32,
+        model_to_clip: mesh.space.matrix().map_or(core::ptr::null(), |matrix| matrix.as_array().as_ptr()),
+        layout,
+        winding: mesh.options.winding as i32,
+        clip_planes: mesh.options.clip_planes.bits() as i32,
+    }
+}
+
+fn in_c(size: u32, call: &RecordedCall, mesh: Option<&MOC_Mesh>) -> MOC_RecordedCall {
+    let (kind, rect, vertex_floats) = match call {
+        RecordedCall::ClearBuffer => (MOC_RecordedCallKind::MOC_RECORDED_CLEAR_BUFFER, [0.0; 5], 0),
         RecordedCall::TestRect(rect) => {
             let [x_min, y_min, x_max, y_max] = rect.edges;
-            let kind = MOC_RecordedCallKind::MOC_RECORDED_TEST_RECT as i32;
-            MOC_RecordedCall { kind, rect: [x_min, y_min, x_max, y_max, rect.w_min], ..plain }
+            (MOC_RecordedCallKind::MOC_RECORDED_TEST_RECT, [x_min, y_min, x_max, y_max, rect.w_min], 0)
         }
-        RecordedCall::RenderTriangles(m) => mesh(MOC_RecordedCallKind::MOC_RECORDED_RENDER_TRIANGLES, m),
-        RecordedCall::TestTriangles(m) => mesh(MOC_RecordedCallKind::MOC_RECORDED_TEST_TRIANGLES, m),
+        RecordedCall::RenderTriangles(m) => {
+            (MOC_RecordedCallKind::MOC_RECORDED_RENDER_TRIANGLES, [0.0; 5], m.vertices.len())
+        }
+        RecordedCall::TestTriangles(m) => {
+            (MOC_RecordedCallKind::MOC_RECORDED_TEST_TRIANGLES, [0.0; 5], m.vertices.len())
+        }
+    };
+    MOC_RecordedCall {
+        size,
+        kind: kind as i32,
+        result: call.result().map_or(MOC_RESULT_UNKNOWN, |result| result as i32),
+        rect,
+        mesh: mesh.map_or(core::ptr::null(), core::ptr::from_ref),
+        vertex_floats,
     }
 }

@@ -1,59 +1,103 @@
 //! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong with it.
 
-use crate::Error;
+use super::status::MOC_Status;
+use crate::attachment::Taken;
+use crate::{Error, RecordingError};
 
-/// An [`Error`] and, where the boundary knows more, which argument it was.
+/// A status and, where the boundary knows more, which argument it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
-    pub error: Error,
+    pub status: MOC_Status,
     why: Option<&'static str>,
 }
 
 impl Refusal {
-    pub const fn new(error: Error, why: &'static str) -> Self {
-        Self { error, why: Some(why) }
+    pub const fn new(status: MOC_Status, why: &'static str) -> Self {
+        Self { status, why: Some(why) }
     }
 
     /// The explanation, in terms of the C interface.
     pub fn why(self) -> &'static str {
-        match (self.why, self.error) {
+        match (self.why, self.status) {
             (Some(why), _) => why,
-            (None, Error::NullPointer) => "a required pointer is null",
-            (None, Error::InvalidEnum) => "an enumeration argument has an unknown value",
-            (None, Error::InvalidSize) => "a size, count or rectangle is out of range",
-            (None, Error::InvalidNumber) => "a number is not finite",
-            (None, Error::InvalidLayout) => "a vertex layout is not accepted, or a pointer is misaligned",
-            (None, Error::NoBuffer) => "no buffer: call MOC_SetResolution first",
-            (None, Error::IndexOutOfRange) => "an index names a vertex that does not exist",
-            (None, Error::SizeMismatch) => "the two buffers differ in resolution or row direction",
-            (None, Error::ListFull) => "a triangle list is full: triangles that did not fit are not drawn",
-            (None, Error::OutOfMemory) => "the allocator returned no memory, or misaligned memory",
-            (None, Error::Internal) => "internal error in the library",
-            (None, Error::File) => "the recording's file cannot be created, written or read",
-            (None, Error::InvalidRecording) => "the file is not a recording, or it is truncated or corrupt",
-            (None, Error::Busy) => "a pool is drawing into the object: call MOC_Flush first",
+            (None, MOC_Status::MOC_STATUS_OK) => "done",
+            (None, MOC_Status::MOC_STATUS_NULL_POINTER) => "a required pointer is null",
+            (None, MOC_Status::MOC_STATUS_INVALID_ENUM) => "an enumeration argument has an unknown value",
+            (None, MOC_Status::MOC_STATUS_INVALID_SIZE) => "a size, count or rectangle is out of range",
+            (None, MOC_Status::MOC_STATUS_INVALID_NUMBER) => "a number is not finite",
+            (None, MOC_Status::MOC_STATUS_INVALID_LAYOUT) => {
+                "a vertex layout is not accepted, or a pointer is misaligned"
+            }
+            (None, MOC_Status::MOC_STATUS_NO_BUFFER) => "no buffer: call MOC_SetResolution first",
+            (None, MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE) => "an index names a vertex that does not exist",
+            (None, MOC_Status::MOC_STATUS_SIZE_MISMATCH) => "the two buffers differ in resolution or row direction",
+            (None, MOC_Status::MOC_STATUS_LIST_FULL) => {
+                "a triangle list is full: triangles that did not fit are not drawn"
+            }
+            (None, MOC_Status::MOC_STATUS_OUT_OF_MEMORY) => "the allocator returned no memory, or misaligned memory",
+            (None, MOC_Status::MOC_STATUS_INTERNAL) => "internal error in the library",
+            (None, MOC_Status::MOC_STATUS_FILE) => "the recording's file cannot be created, written or read",
+            (None, MOC_Status::MOC_STATUS_INVALID_RECORDING) => {
+                "the file is not a recording, or it is truncated or corrupt"
+            }
+            (None, MOC_Status::MOC_STATUS_BUSY) => "a pool is drawing into the object: call MOC_Flush first",
         }
+    }
+}
+
+impl From<MOC_Status> for Refusal {
+    fn from(status: MOC_Status) -> Self {
+        Self { status, why: None }
     }
 }
 
 impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
-        Self { error, why: None }
+        let status = match error {
+            Error::InvalidSize => MOC_Status::MOC_STATUS_INVALID_SIZE,
+            Error::InvalidNumber => MOC_Status::MOC_STATUS_INVALID_NUMBER,
+            Error::InvalidLayout => MOC_Status::MOC_STATUS_INVALID_LAYOUT,
+            Error::IndexOutOfRange => MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE,
+            Error::SizeMismatch => MOC_Status::MOC_STATUS_SIZE_MISMATCH,
+            Error::ListFull => MOC_Status::MOC_STATUS_LIST_FULL,
+            Error::OutOfMemory => MOC_Status::MOC_STATUS_OUT_OF_MEMORY,
+            // A pool of the C interface may also have an object without a buffer.
+            Error::NoObject => MOC_Status::MOC_STATUS_NO_BUFFER,
+        };
+        status.into()
+    }
+}
+
+impl From<RecordingError> for Refusal {
+    fn from(error: RecordingError) -> Self {
+        let status = match error {
+            RecordingError::Busy => MOC_Status::MOC_STATUS_BUSY,
+            RecordingError::OutOfMemory => MOC_Status::MOC_STATUS_OUT_OF_MEMORY,
+            RecordingError::File(_) => MOC_Status::MOC_STATUS_FILE,
+            RecordingError::Invalid { .. } => MOC_Status::MOC_STATUS_INVALID_RECORDING,
+        };
+        status.into()
+    }
+}
+
+impl From<Taken> for Refusal {
+    fn from(_: Taken) -> Self {
+        Self::new(MOC_Status::MOC_STATUS_BUSY, "the object belongs to another pool")
     }
 }
 
 /// Adds to results of the Rust API which argument was wrong, where the boundary knows it.
 pub(super) trait Because<T> {
-    /// If the error is `error`, explains it with `why`.
-    fn because(self, error: Error, why: &'static str) -> Result<T, Refusal>;
+    /// If the status is `status`, explains it with `why`.
+    fn because(self, status: MOC_Status, why: &'static str) -> Result<T, Refusal>;
 }
 
 impl<T, E: Into<Refusal>> Because<T> for Result<T, E> {
     #[inline]
-    fn because(self, error: Error, why: &'static str) -> Result<T, Refusal> {
+    fn because(self, status: MOC_Status, why: &'static str) -> Result<T, Refusal> {
         self.map_err(|e| {
             let refusal = e.into();
-            if refusal.error == error { Refusal::new(error, why) } else { refusal }
+            if refusal.status == status { Refusal::new(status, why) } else { refusal }
         })
     }
 }

@@ -6,15 +6,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::messages;
 use super::pointers::write;
 use super::refusal::Refusal;
+use crate::CullingResult;
 use crate::float_environment::in_default_environment;
-use crate::{CullingResult, Error};
 
 /// The version of this interface: 1000 * major + minor of the library's version.
 ///
 /// Compare it with MOC_GetAbiVersion() to see that header and library belong together: before version
 /// 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
 /// header's.
-pub const MOC_ABI_VERSION: u32 = 1;
+pub const MOC_ABI_VERSION: u32 = 2;
 
 const _: () = {
     const fn number(text: &str) -> u32 {
@@ -56,7 +56,7 @@ pub enum MOC_Status {
     MOC_STATUS_LIST_FULL = 9,
     /// The allocator returned nothing.
     MOC_STATUS_OUT_OF_MEMORY = 10,
-    /// The library failed inside. No memory was harmed, but the call did not finish.
+    /// The library failed inside. Memory is intact, but the call did not finish.
     MOC_STATUS_INTERNAL = 11,
     /// A recording's file cannot be made, written or read.
     MOC_STATUS_FILE = 12,
@@ -65,27 +65,6 @@ pub enum MOC_Status {
     /// A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
     /// recording.
     MOC_STATUS_BUSY = 14,
-}
-
-impl From<Error> for MOC_Status {
-    fn from(error: Error) -> Self {
-        match error {
-            Error::NullPointer => Self::MOC_STATUS_NULL_POINTER,
-            Error::InvalidEnum => Self::MOC_STATUS_INVALID_ENUM,
-            Error::InvalidSize => Self::MOC_STATUS_INVALID_SIZE,
-            Error::InvalidNumber => Self::MOC_STATUS_INVALID_NUMBER,
-            Error::InvalidLayout => Self::MOC_STATUS_INVALID_LAYOUT,
-            Error::NoBuffer => Self::MOC_STATUS_NO_BUFFER,
-            Error::IndexOutOfRange => Self::MOC_STATUS_INDEX_OUT_OF_RANGE,
-            Error::SizeMismatch => Self::MOC_STATUS_SIZE_MISMATCH,
-            Error::ListFull => Self::MOC_STATUS_LIST_FULL,
-            Error::OutOfMemory => Self::MOC_STATUS_OUT_OF_MEMORY,
-            Error::Internal => Self::MOC_STATUS_INTERNAL,
-            Error::File => Self::MOC_STATUS_FILE,
-            Error::InvalidRecording => Self::MOC_STATUS_INVALID_RECORDING,
-            Error::Busy => Self::MOC_STATUS_BUSY,
-        }
-    }
 }
 
 /// One text a status, in their order.
@@ -169,12 +148,15 @@ pub(super) unsafe fn guard_result_as_set<F: FnOnce() -> Result<CullingResult, Re
 #[inline]
 fn run(name: fn() -> &'static str, body: impl FnOnce() -> Result<(), Refusal>) -> MOC_Status {
     match catch_unwind(AssertUnwindSafe(body)) {
-        Ok(Ok(())) => done(),
+        Ok(Ok(())) => {
+            messages::tell_doubt(name);
+            done()
+        }
         Ok(Err(refusal)) => messages::refused(name(), refusal),
         Err(payload) => {
             // Dropping the panic's payload could panic again.
             core::mem::forget(payload);
-            messages::refused(name(), Error::Internal.into())
+            messages::refused(name(), MOC_Status::MOC_STATUS_INTERNAL.into())
         }
     }
 }
@@ -184,26 +166,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_error_has_its_own_status_and_text() {
-        let errors = [
-            Error::NullPointer,
-            Error::InvalidEnum,
-            Error::InvalidSize,
-            Error::InvalidNumber,
-            Error::InvalidLayout,
-            Error::NoBuffer,
-            Error::IndexOutOfRange,
-            Error::SizeMismatch,
-            Error::ListFull,
-            Error::OutOfMemory,
-            Error::Internal,
-            Error::File,
-            Error::InvalidRecording,
-            Error::Busy,
+    fn every_status_has_its_own_text_and_explanation() {
+        use MOC_Status::*;
+        let all = [
+            MOC_STATUS_OK,
+            MOC_STATUS_NULL_POINTER,
+            MOC_STATUS_INVALID_ENUM,
+            MOC_STATUS_INVALID_SIZE,
+            MOC_STATUS_INVALID_NUMBER,
+            MOC_STATUS_INVALID_LAYOUT,
+            MOC_STATUS_NO_BUFFER,
+            MOC_STATUS_INDEX_OUT_OF_RANGE,
+            MOC_STATUS_SIZE_MISMATCH,
+            MOC_STATUS_LIST_FULL,
+            MOC_STATUS_OUT_OF_MEMORY,
+            MOC_STATUS_INTERNAL,
+            MOC_STATUS_FILE,
+            MOC_STATUS_INVALID_RECORDING,
+            MOC_STATUS_BUSY,
         ];
-        for (i, error) in errors.into_iter().enumerate() {
-            assert_eq!(MOC_Status::from(error) as usize, i + 1);
-            assert_eq!(TEXTS[i + 1].to_str().unwrap(), error.to_string());
+        assert_eq!(all.len(), TEXTS.len());
+        let (mut texts, mut explanations) = (std::collections::BTreeSet::new(), std::collections::BTreeSet::new());
+        for (i, status) in all.into_iter().enumerate() {
+            assert_eq!(status as usize, i);
+            assert!(texts.insert(TEXTS[i]) && explanations.insert(Refusal::from(status).why()), "{status:?}");
         }
     }
 

@@ -4,8 +4,8 @@ use super::pointers::{check_length, read};
 use super::refusal::Refusal;
 use super::status::{MOC_Status, guard};
 use super::types::MOC_VertexLayout;
+use crate::VertexLayout;
 use crate::vertices::VertexSource;
-use crate::{Error, VertexLayout};
 
 /// Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
 /// writes them to `out` as packed x, y, z, w, 16 bytes a vertex: what draws and tests without a matrix take. With the
@@ -29,26 +29,27 @@ pub unsafe extern "C" fn MOC_TransformVertices(
     layout: *const MOC_VertexLayout,
 ) -> MOC_Status {
     guard(|| {
-        const NO_MATRIX: Refusal = Refusal::new(Error::NullPointer, "matrix is null");
+        const NO_MATRIX: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "matrix is null");
         // SAFETY: the caller's contract.
         let matrix = unsafe { read(matrix.cast::<[f32; 16]>()) }.ok_or(NO_MATRIX)?;
         // SAFETY: the caller's contract.
         let layout = unsafe { read(layout) }.map_or(VertexLayout::POSITIONS, VertexLayout::from);
         if layout.stride < 0 {
-            return Err(Refusal::new(Error::InvalidLayout, "the stride of the vertex layout is negative"));
+            return Err(Refusal::new(
+                MOC_Status::MOC_STATUS_INVALID_LAYOUT,
+                "the stride of the vertex layout is negative",
+            ));
         }
         if n_vertices == 0 {
             return Ok(());
         }
         if vertices.is_null() || out.is_null() {
-            return Err(Refusal::new(Error::NullPointer, "vertices or out is null"));
+            return Err(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "vertices or out is null"));
         }
         check_length::<[f32; 4]>(n_vertices as usize)?;
         let source = VertexSource { base: vertices.cast(), layout };
         // SAFETY: the caller's contract: so many vertices can be read and written.
-        unsafe {
-            crate::transform::transform_raw(&glam::Mat4::from_cols_array(&matrix), source, out, n_vertices as usize)
-        };
+        unsafe { crate::transform::transform_raw(&matrix, source, out, n_vertices as usize) };
         Ok(())
     })
 }

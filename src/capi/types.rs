@@ -3,12 +3,14 @@
 use core::ffi::c_void;
 
 use super::refusal::Refusal;
+use super::status::MOC_Status;
 use crate::{
-    BackfaceWinding, ClipPlanes, CullingResult, Error, Implementation, ScissorRect, Statistics, TriList, UpdateRule,
+    BackfaceWinding, ClipPlanes, CullingResult, Implementation, ScissorRect, Statistics, TriList, UpdateRule,
     VertexLayout, YAxis,
 };
 
 /// An instruction set. All of them give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_Implementation {
     /// No vector instructions by name: runs anywhere.
@@ -28,6 +30,7 @@ pub enum MOC_Implementation {
 }
 
 /// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_UpdateRule {
     /// One reference depth and two working layers: accurate in nearly any scene and order. The default.
@@ -42,6 +45,7 @@ pub enum MOC_UpdateRule {
 }
 
 /// The direction in which screen rows are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_YAxis {
     /// Row 0 is the top of the screen (Direct3D, Vulkan, Metal). The default.
@@ -51,6 +55,7 @@ pub enum MOC_YAxis {
 }
 
 /// Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_BackfaceWinding {
     /// None: both sides count.
@@ -62,6 +67,7 @@ pub enum MOC_BackfaceWinding {
 }
 
 /// What a draw or a query found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_CullingResult {
     /// It may be seen.
@@ -76,6 +82,7 @@ pub enum MOC_CullingResult {
 ///
 /// Only MOC_CLIP_PLANE_NEAR changes anything: without it the near plane of the object is not applied
 /// (what lies behind the eye is never drawn). Leaving out side planes is always safe and never faster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_ClipPlanes {
     /// No plane.
@@ -109,10 +116,12 @@ pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 pub type MOC_CallAlloc =
     Option<unsafe extern "C" fn(alloc: MOC_AlignedAlloc, alignment: usize, size: usize) -> *mut c_void>;
 
-/// What an object is made with. Fill it with MOC_DefaultSettings first, then change what matters.
-#[derive(Clone, Copy)]
+/// What an object is made with. Set `size`, let MOC_DefaultSettings fill in the rest, then change what matters.
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_Settings {
+    /// sizeof(MOC_Settings).
+    pub size: u32,
     /// A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. On another
     /// architecture than the named one, anything but MOC_SCALAR permits the best that there is.
     pub implementation: i32,
@@ -120,8 +129,6 @@ pub struct MOC_Settings {
     pub update_rule: i32,
     /// A MOC_YAxis. Default MOC_Y_AXIS_DOWN.
     pub y_axis: i32,
-    /// 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
-    pub precise_coverage: i32,
     /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
     /// MOC_GetDroppedTriangles counts. Default 0.
     pub statistics: i32,
@@ -141,7 +148,7 @@ pub struct MOC_Settings {
 /// matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n); positions among other things are
 /// (sizeof(vertex), 4, 8) with a matrix, and a pointer to the first x. Nothing has to be aligned. Offsets may be negative,
 /// but for the functions whose names end in Checked.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_VertexLayout {
     /// Bytes from one vertex to the next; not negative.
@@ -154,7 +161,7 @@ pub struct MOC_VertexLayout {
 
 /// A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
 /// maximum may also be the width or height of the buffer, or that rounded up to the next multiple.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_ScissorRect {
     /// First column.
@@ -169,6 +176,7 @@ pub struct MOC_ScissorRect {
 
 /// A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it,
 /// MOC_RenderTrilist draws it.
+#[derive(Debug)]
 #[repr(C)]
 pub struct MOC_TriList {
     /// How many triangles `data` can hold.
@@ -180,7 +188,7 @@ pub struct MOC_TriList {
 }
 
 /// Counts of what draws did since the object was made.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_OccluderStatistics {
     /// Triangles submitted to be drawn or binned, and those of drawn lists.
@@ -197,7 +205,7 @@ pub struct MOC_OccluderStatistics {
 }
 
 /// Counts of what queries did since the object was made.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_OccludeeStatistics {
     /// Rectangles tested.
@@ -210,11 +218,15 @@ pub struct MOC_OccludeeStatistics {
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. The 72
-/// bytes are those of Intel's struct, and will stay so; other counts have their own functions, such as MOC_GetDroppedTriangles.
-#[derive(Clone, Copy)]
+/// All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. Triangles
+/// that are dropped are counted in either case, for MOC_GetDroppedTriangles.
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_Statistics {
+    /// sizeof(MOC_Statistics).
+    pub size: u32,
+    /// 0.
+    pub reserved: u32,
     /// Of draws.
     pub occluders: MOC_OccluderStatistics,
     /// Of queries.
@@ -239,9 +251,11 @@ impl From<MOC_ScissorRect> for ScissorRect {
     }
 }
 
-impl From<Statistics> for MOC_Statistics {
-    fn from(s: Statistics) -> Self {
+impl MOC_Statistics {
+    pub(super) fn new(size: u32, s: Statistics) -> Self {
         Self {
+            size,
+            reserved: 0,
             occluders: MOC_OccluderStatistics {
                 num_processed_triangles: s.occluders.num_processed_triangles,
                 num_rasterized_triangles: s.occluders.num_rasterized_triangles,
@@ -270,8 +284,9 @@ const _: () = {
 
 // Programs copy these by offset.
 const _: () = {
-    assert!(size_of::<MOC_Statistics>() == 72);
-    assert!(core::mem::offset_of!(MOC_Statistics, occludees) == 40);
+    assert!(size_of::<MOC_Statistics>() == 80);
+    assert!(core::mem::offset_of!(MOC_Statistics, occluders) == 8);
+    assert!(core::mem::offset_of!(MOC_Statistics, occludees) == 48);
     assert!(core::mem::offset_of!(MOC_OccluderStatistics, num_tiles_merged) == 32);
     assert!(core::mem::offset_of!(MOC_OccludeeStatistics, num_tiles_traversed) == 24);
 };
@@ -315,7 +330,12 @@ pub(super) fn implementation(value: i32) -> Result<Implementation, Refusal> {
         3 => Implementation::Avx512,
         16 => Implementation::Neon,
         17 => Implementation::Simd128,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "implementation is not a MOC_Implementation")),
+        _ => {
+            return Err(Refusal::new(
+                MOC_Status::MOC_STATUS_INVALID_ENUM,
+                "implementation is not a MOC_Implementation",
+            ));
+        }
     })
 }
 
@@ -325,7 +345,7 @@ pub(super) fn update_rule(value: i32) -> Result<UpdateRule, Refusal> {
         1 => UpdateRule::Quick,
         2 => UpdateRule::Accurate,
         3 => UpdateRule::FourLayer,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "update_rule is not a MOC_UpdateRule")),
+        _ => return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "update_rule is not a MOC_UpdateRule")),
     })
 }
 
@@ -333,23 +353,26 @@ pub(super) fn y_axis(value: i32) -> Result<YAxis, Refusal> {
     Ok(match value {
         0 => YAxis::Down,
         1 => YAxis::Up,
-        _ => return Err(Refusal::new(Error::InvalidEnum, "y_axis is not a MOC_YAxis")),
+        _ => return Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "y_axis is not a MOC_YAxis")),
     })
 }
 
 pub(super) fn winding(value: i32) -> Result<BackfaceWinding, Refusal> {
-    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "winding is not a MOC_BackfaceWinding");
+    const WHY: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "winding is not a MOC_BackfaceWinding");
     BackfaceWinding::from_number(value).ok_or(WHY)
 }
 
 pub(super) fn culling_result(value: i32) -> Result<CullingResult, Refusal> {
-    const WHY: Refusal =
-        Refusal::new(Error::InvalidEnum, "result is neither a MOC_CullingResult nor MOC_RESULT_UNKNOWN");
+    const WHY: Refusal = Refusal::new(
+        MOC_Status::MOC_STATUS_INVALID_ENUM,
+        "result is neither a MOC_CullingResult nor MOC_RESULT_UNKNOWN",
+    );
     CullingResult::from_number(value).ok_or(WHY)
 }
 
 pub(super) fn clip_planes(value: i32) -> Result<ClipPlanes, Refusal> {
-    const WHY: Refusal = Refusal::new(Error::InvalidEnum, "clip_planes has a bit that is not in MOC_ClipPlanes");
+    const WHY: Refusal =
+        Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, "clip_planes has a bit that is not in MOC_ClipPlanes");
     u32::try_from(value).ok().and_then(ClipPlanes::from_bits).ok_or(WHY)
 }
 
@@ -358,6 +381,6 @@ pub(super) fn flag(value: i32, why: &'static str) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(Refusal::new(Error::InvalidEnum, why)),
+        _ => Err(Refusal::new(MOC_Status::MOC_STATUS_INVALID_ENUM, why)),
     }
 }

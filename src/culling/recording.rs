@@ -2,22 +2,20 @@
 
 use std::path::Path;
 
-use crate::source::Mesh;
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, RecordingError, Vertices};
 
 impl MaskedOcclusionCulling {
-    /// Records clears, draws and queries into a file from now on, for [`Recording`] and for the player of the library
-    /// that this one stands in for.
+    /// Records clears, draws and queries into a file from now on, for [`Recording`](crate::Recording) and for Intel MOC's own
+    /// player.
     ///
     /// The file names one near plane and one resolution: setting another of either ends it, once it holds a call.
     /// Start before the clear of a frame, so that the recording begins with an empty buffer. Merges and binned lists are not
     /// recorded; see [`Self::record_render_triangles`].
     ///
     /// # Errors
-    /// [`RecordingError::NoBuffer`]; [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
+    /// [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
     pub fn recorder_start(&self, path: impl AsRef<Path>) -> Result<(), RecordingError> {
-        let resolution = self.resolution().ok_or(RecordingError::NoBuffer)?;
-        self.recorder.start(path.as_ref(), (self.near_clip_plane(), resolution))
+        self.recorder.start(path.as_ref(), (self.near_clip_plane(), self.resolution()))
     }
 
     /// Ends the recording. Nothing happens where there is none; an object that is dropped ends its recording, too.
@@ -40,10 +38,7 @@ impl MaskedOcclusionCulling {
         options: &DrawOptions,
         result: Option<CullingResult>,
     ) -> Result<(), Error> {
-        self.check_mesh(&vertices, triangles)?;
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        let mesh = unsafe { Mesh::new(vertices.source(), triangles, options) };
-        self.recorder.render_triangles(result, &mesh);
+        self.recorder.render_triangles(result, &self.mesh(&vertices, triangles, options)?);
         Ok(())
     }
 }

@@ -6,12 +6,15 @@ impl RecordedCall {
     /// Makes the call. The answer of a draw or a query.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`]; of a call that was not loaded also those of [`MaskedOcclusionCulling::render_triangles`].
+    /// Those of [`MaskedOcclusionCulling::render_triangles`]; never of a call that was loaded.
     pub fn play(&self, moc: &mut MaskedOcclusionCulling) -> Result<Option<CullingResult>, Error> {
         match self {
-            Self::ClearBuffer => moc.clear_buffer().map(|()| None),
+            Self::ClearBuffer => {
+                moc.clear_buffer();
+                Ok(None)
+            }
             &Self::TestRect(RecordedRect { edges: [x_min, y_min, x_max, y_max], w_min, .. }) => {
-                moc.test_rect(x_min, y_min, x_max, y_max, w_min).map(Some)
+                Ok(Some(moc.test_rect(x_min, y_min, x_max, y_max, w_min)))
             }
             Self::RenderTriangles(mesh) => {
                 moc.render_triangles(mesh.vertices()?, &mesh.triangles, &mesh.options).map(Some)

@@ -8,8 +8,6 @@
 //! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the
 //! denormal numbers: the bits do not depend on whether the processor flushes those.
 
-use glam::Mat4;
-
 use super::camera::{Camera, FARTHEST_W};
 use crate::simd::Simd;
 
@@ -30,8 +28,7 @@ pub(crate) struct MatrixRows<S: Simd>([[S::F; 4]; 3]);
 
 impl<S: Simd> MatrixRows<S> {
     #[inline(always)]
-    pub fn new(s: S, matrix: &Mat4) -> Self {
-        let m = matrix.to_cols_array();
+    pub fn new(s: S, m: &[f32; 16]) -> Self {
         let row = |r: usize| [s.f(m[r]), s.f(m[4 + r]), s.f(m[8 + r]), s.f(m[12 + r])];
         Self([row(0), row(1), row(3)])
     }

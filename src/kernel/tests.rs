@@ -6,12 +6,11 @@
 #[path = "../../tests/scenes/mod.rs"]
 mod scenes;
 
-use glam::Mat4;
-
 use crate::simd::with_sixteen_lanes;
 use crate::{
-    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Implementation, MaskedOcclusionCulling,
-    ScissorRect, Settings, TriList, UpdateRule, VertexLayout, Vertices, YAxis,
+    BackfaceWinding, ClipSpaceLayout, CullingResult, CullingThreadpool, DrawOptions, Implementation,
+    MaskedOcclusionCulling, ModelSpaceLayout, ScissorRect, Settings, ThreadpoolSettings, TriList, UpdateRule, Vertices,
+    YAxis,
 };
 use scenes::Scene;
 
@@ -31,8 +30,7 @@ impl Setting {
         let Self { update_rule, y_axis, statistics, size } = self;
         let implementation = Implementation::Avx2;
         let settings = Settings { implementation, update_rule, y_axis, statistics, ..Settings::default() };
-        let mut moc = MaskedOcclusionCulling::new(settings);
-        moc.set_resolution(size.0, size.1).unwrap();
+        let mut moc = MaskedOcclusionCulling::new(size.0, size.1, settings).unwrap();
         moc.set_near_clip_plane(near).unwrap();
         moc
     }
@@ -56,13 +54,11 @@ fn settings() -> Vec<Setting> {
 }
 
 fn vertices(scene: &Scene) -> Vertices<'_> {
-    let layout = if scene.matrix.is_some() { VertexLayout::new(16, 4, 8) } else { VertexLayout::CLIP_SPACE };
-    Vertices::new(scene.vertices.as_flattened(), layout).unwrap()
-}
-
-fn options(scene: &Scene, winding: BackfaceWinding) -> DrawOptions {
-    let model_to_clip = scene.matrix.as_ref().map(Mat4::from_cols_array);
-    DrawOptions { model_to_clip, winding, ..DrawOptions::default() }
+    let space = match scene.matrix {
+        Some(matrix) => ModelSpaceLayout::XYZ_PADDED.with_matrix(matrix),
+        None => ClipSpaceLayout::XYZW.into(),
+    };
+    Vertices::new(scene.vertices.as_flattened(), space).unwrap()
 }
 
 fn depths(moc: &MaskedOcclusionCulling, (w, h): (u32, u32)) -> Vec<u32> {
@@ -104,11 +100,11 @@ fn outcome(moc: &MaskedOcclusionCulling, setting: Setting, answers: Vec<CullingR
 fn draws_and_queries_are_the_same_on_sixteen_lanes() {
     for winding in [BackfaceWinding::Clockwise, BackfaceWinding::None] {
         compare(|scene, setting| {
-            let (mut moc, options) = (setting.object(scene.near), options(scene, winding));
+            let (mut moc, options) = (setting.object(scene.near), DrawOptions::default().with_winding(winding));
             let mut answers = Vec::new();
             for object in &scene.objects {
                 let [x0, y0, x1, y1, nearest] = scene.rectangle(object);
-                answers.push(moc.test_rect(x0, y0, x1, y1, nearest).unwrap());
+                answers.push(moc.test_rect(x0, y0, x1, y1, nearest));
                 answers.push(moc.test_triangles(vertices(scene), object, &options).unwrap());
                 answers.push(moc.render_triangles(vertices(scene), object, &options).unwrap());
             }
@@ -122,7 +118,8 @@ fn draws_and_queries_are_the_same_on_sixteen_lanes() {
 #[test]
 fn one_call_for_everything_is_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {
-        let (mut moc, options) = (setting.object(scene.near), options(scene, BackfaceWinding::Clockwise));
+        let (mut moc, options) =
+            (setting.object(scene.near), DrawOptions::default().with_winding(BackfaceWinding::Clockwise));
         let answer = moc.render_triangles(vertices(scene), &scene.objects.concat(), &options).unwrap();
         outcome(&moc, setting, vec![answer])
     });
@@ -131,7 +128,7 @@ fn one_call_for_everything_is_the_same_on_sixteen_lanes() {
 #[test]
 fn merges_are_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {
-        let options = options(scene, BackfaceWinding::Clockwise);
+        let options = DrawOptions::default().with_winding(BackfaceWinding::Clockwise);
         let mut objects = [0, 1].map(|_| setting.object(scene.near));
         for (k, object) in scene.objects.iter().enumerate() {
             objects[k % 2].render_triangles(vertices(scene), object, &options).unwrap();
@@ -145,7 +142,8 @@ fn merges_are_the_same_on_sixteen_lanes() {
 #[test]
 fn lists_are_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {
-        let (mut moc, options) = (setting.object(scene.near), options(scene, BackfaceWinding::Clockwise));
+        let (mut moc, options) =
+            (setting.object(scene.near), DrawOptions::default().with_winding(BackfaceWinding::Clockwise));
         let triangles = scene.objects.concat();
         // Bins with an odd number of rows of tiles are drawn on eight lanes.
         let (bins, (w, h)) = ((2, 3), setting.size);
@@ -172,8 +170,10 @@ fn lists_are_the_same_on_sixteen_lanes() {
 #[test]
 fn a_pool_is_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {
-        let options = options(scene, BackfaceWinding::Clockwise);
-        let pool = CullingThreadpool::with_processors(2, 2, 4, 32, 8).unwrap();
+        let options = DrawOptions::default().with_winding(BackfaceWinding::Clockwise);
+        let pool =
+            CullingThreadpool::new(ThreadpoolSettings::default().with_threads(2).with_bins(2, 4).with_processors(8))
+                .unwrap();
         pool.set_buffer(setting.object(scene.near));
         pool.scope(|scope| {
             for object in &scene.objects {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, Rw
 
 use super::target::{Bins, Target};
 use super::workers::Workers;
-use crate::attachment::{Attachment, Pool};
+use crate::attachment::{Attachment, Pool, Taken};
 use crate::source::Mesh;
 use crate::{CullingResult, Error, MaskedOcclusionCulling};
 
@@ -32,14 +32,14 @@ impl Gate {
     /// Draws into this object from now on, or into none, once what was submitted before is drawn. True: the pool owns it.
     ///
     /// # Errors
-    /// [`Error::Busy`] if it belongs to another pool; nothing is changed.
+    /// [`Taken`] if it belongs to another pool; nothing is changed.
     ///
     /// # Safety
     /// As [`Target::new`], until another one is set or [`Pool::forget`] is called.
     pub unsafe fn exchange(
         self: &Arc<Self>,
         moc: Option<(NonNull<MaskedOcclusionCulling>, bool)>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), Taken> {
         let mut gate = self.shut();
         self.workers.flush();
         let new = moc.map(|(moc, owned)| {
@@ -83,7 +83,7 @@ impl Gate {
     pub fn resize(&self, change: impl FnOnce(&mut MaskedOcclusionCulling) -> Result<(), Error>) -> Result<(), Error> {
         let mut gate = self.shut();
         self.workers.flush();
-        let target = gate.as_ref().ok_or(Error::NoBuffer)?;
+        let target = gate.as_ref().ok_or(Error::NoObject)?;
         // SAFETY: nothing is in flight, and no thread submits or queries while the gate is shut.
         change(unsafe { &mut *target.pointer().as_ptr() })?;
         self.cut_again(&mut gate);
@@ -114,45 +114,43 @@ impl Gate {
         }
     }
 
-    /// The target, if it has a buffer.
-    pub fn with_buffer<R>(&self, call: impl FnOnce(&Target) -> Result<R, Error>) -> Result<R, Error> {
+    /// The target, if its object has a buffer, which only objects of the C interface may lack.
+    ///
+    /// # Errors
+    /// [`Error::NoObject`], and what the call returns.
+    pub fn with_buffer<R, E: From<Error>>(&self, call: impl FnOnce(&Target) -> Result<R, E>) -> Result<R, E> {
         let pass = self.pass();
-        let target = pass.as_ref().ok_or(Error::NoBuffer)?;
-        target.moc().buffer()?;
+        let target = pass.as_ref().filter(|target| target.moc().has_buffer()).ok_or(Error::NoObject)?;
         call(target)
     }
 
     /// The target, if it is the object with this attachment.
-    fn with_object_of<R>(
-        &self,
-        attachment: &Attachment,
-        call: impl FnOnce(&Target) -> Result<R, Error>,
-    ) -> Option<Result<R, Error>> {
+    fn with_object_of<R>(&self, attachment: &Attachment, call: impl FnOnce(&Target) -> R) -> Option<R> {
         let pass = self.pass();
         let target = pass.as_ref().filter(|target| core::ptr::eq(target.moc().attachment(), attachment))?;
-        Some(target.moc().buffer().and_then(|_| call(target)))
+        Some(call(target))
     }
 
     /// Tests a rectangle against what has been drawn so far.
-    pub fn rect(&self, target: &Target, edges: [f32; 4], w_min: f32) -> Result<CullingResult, Error> {
-        let tiles = target.moc().rectangle_tiles(edges)?;
+    pub fn rect(&self, target: &Target, edges: [f32; 4], w_min: f32) -> CullingResult {
+        let tiles = target.moc().rectangle_tiles(edges);
         let recording = self.recording(target);
         // Checked before the query: an answer given while work is in flight depends on timing, so a replay cannot be
         // compared with it.
         let settled = recording.is_some() && self.workers.is_done();
-        let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min))?;
+        let result = target.query(tiles, |moc| moc.ask_rect(edges, w_min));
         target.moc().recorder().test_rect(settled.then_some(result), edges, w_min);
-        Ok(result)
+        result
     }
 
     /// Tests a mesh against what has been drawn so far.
-    pub fn mesh(&self, target: &Target, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+    pub fn mesh(&self, target: &Target, mesh: &Mesh<'_>) -> CullingResult {
         let recording = self.recording(target);
         // As in `rect`.
         let settled = recording.is_some() && self.workers.is_done();
-        let result = target.query(target.all_tiles(), |moc| moc.ask_triangles(mesh))?;
+        let result = target.query(target.all_tiles(), |moc| moc.ask_triangles(mesh));
         target.moc().recorder().test_triangles(settled.then_some(result), mesh);
-        Ok(result)
+        result
     }
 
     fn shut(&self) -> RwLockWriteGuard<'_, Option<Arc<Target>>> {
@@ -190,11 +188,11 @@ impl Pool for Gate {
         *gate = None;
     }
 
-    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<Result<CullingResult, Error>> {
+    fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<CullingResult> {
         self.with_object_of(attachment, |target| self.rect(target, edges, w_min))
     }
 
-    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<Result<CullingResult, Error>> {
+    fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<CullingResult> {
         self.with_object_of(attachment, |target| self.mesh(target, mesh))
     }
 }

@@ -31,12 +31,14 @@ mod target;
 mod tests;
 mod workers;
 
+use core::fmt;
 use core::marker::PhantomData;
 use core::ptr::NonNull;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
+use crate::attachment::Taken;
 use crate::float_environment::in_default_environment;
 use crate::source::Mesh;
 use crate::vertices::VertexSource;
@@ -58,12 +60,12 @@ const CALL_TRIANGLES: usize = 1536;
 /// Several threads may submit and query at once; calls of one thread take effect in its order.
 ///
 /// ```
-/// use masked_occlusion_culling::glam::Mat4;
-/// use masked_occlusion_culling::{CullingResult, CullingThreadpool, DrawOptions, MaskedOcclusionCulling, Vertices};
+/// use masked_occlusion_culling::{
+///     CullingResult, CullingThreadpool, DrawOptions, MaskedOcclusionCulling, Settings, ThreadpoolSettings, Vertices,
+/// };
 ///
-/// let mut culling = MaskedOcclusionCulling::default();
-/// culling.set_resolution(640, 360)?;
-/// let pool = CullingThreadpool::new(2, 4, 4, 32)?;
+/// let culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
+/// let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(2))?;
 /// // The pool has the object until it hands it back.
 /// pool.set_buffer(culling);
 /// pool.wake_threads();
@@ -71,13 +73,13 @@ const CALL_TRIANGLES: usize = 1536;
 /// // A wall 10 before the eye, which looks along -z: w is -z.
 /// let wall = [[-20.0, -20.0, -10.0], [20.0, -20.0, -10.0], [20.0, 20.0, -10.0], [-20.0, 20.0, -10.0]];
 /// let perspective = [1.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, -0.2, 0.0];
-/// let options = DrawOptions::with_matrix(Mat4::from_cols_array(&perspective));
+/// let wall = Vertices::model_space(&wall, perspective);
 /// pool.clear_buffer()?;
 /// // Returns at once; all of it is drawn when the scope ends.
-/// pool.scope(|scope| scope.render_triangles(Vertices::from_positions(&wall), &[0, 1, 2, 0, 2, 3], &options))?;
+/// pool.scope(|scope| scope.render_triangles(wall, &[0, 1, 2, 0, 2, 3], &DrawOptions::default()))?;
 /// assert_eq!(pool.test_rect(-0.1, -0.1, 0.1, 0.1, 12.0)?, CullingResult::Occluded);
 /// let culling = pool.take_buffer().expect("it was given");
-/// # assert!(culling.resolution().is_some());
+/// # assert_eq!(culling.resolution(), (640, 360));
 /// # Ok::<(), masked_occlusion_culling::Error>(())
 /// ```
 pub struct CullingThreadpool {
@@ -86,35 +88,12 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool of `threads` worker threads, with defaults otherwise; see [`ThreadpoolSettings`].
-    ///
-    /// # Errors
-    /// As [`Self::with_settings`].
-    pub fn new(threads: u32, bins_w: u32, bins_h: u32, max_jobs: u32) -> Result<Self, Error> {
-        Self::with_processors(threads, bins_w, bins_h, max_jobs, 0)
-    }
-
-    /// The same where the pool and its caller have so many processors, whatever the system says.
-    ///
-    /// # Errors
-    /// As [`Self::with_settings`].
-    pub fn with_processors(
-        threads: u32,
-        bins_w: u32,
-        bins_h: u32,
-        max_jobs: u32,
-        processors: u32,
-    ) -> Result<Self, Error> {
-        let settings = ThreadpoolSettings { threads, bins_w, bins_h, max_jobs, processors, ..Default::default() };
-        Self::with_settings(settings)
-    }
-
     /// A pool whose threads sleep until [`Self::wake_threads`].
     ///
     /// # Errors
     /// [`Error::InvalidSize`] if `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` is above 1,024; [`Error::OutOfMemory`] if
     /// the system cannot start a thread.
-    pub fn with_settings(settings: ThreadpoolSettings) -> Result<Self, Error> {
+    pub fn new(settings: ThreadpoolSettings) -> Result<Self, Error> {
         let ThreadpoolSettings { bins_w, bins_h, max_jobs, .. } = settings;
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || settings.threads > MAX_THREADS {
             return Err(Error::InvalidSize);
@@ -155,7 +134,7 @@ impl CullingThreadpool {
     /// The number of columns and rows of bins.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`] if the pool has no object with a buffer.
+    /// [`Error::NoObject`].
     pub fn bin_count(&self) -> Result<(u32, u32), Error> {
         self.gate.with_buffer(|target| Ok(target.bin_count()))
     }
@@ -194,7 +173,7 @@ impl CullingThreadpool {
         let moc = NonNull::from(Box::leak(Box::new(moc)));
         // SAFETY: leaked just now, and freed with the target.
         let done = unsafe { self.gate.exchange(Some((moc, true))) };
-        debug_assert_eq!(done, Ok(()), "no other pool has it");
+        debug_assert!(done.is_ok(), "no other pool has it");
     }
 
     /// Flushes, and hands the object back. Nothing where there is none that the pool owns.
@@ -206,13 +185,13 @@ impl CullingThreadpool {
     /// plane.
     ///
     /// # Errors
-    /// [`Error::Busy`] if the object belongs to another pool; nothing is changed.
+    /// [`Taken`] if the object belongs to another pool; nothing is changed.
     ///
     /// # Safety
     /// The object does not move until another one is set, the pool is dropped, or the object itself is dropped; the two may be
     /// dropped in either order. Until then no `&mut` to it is used while the pool has work in flight or is being called; `&`
     /// may be used for queries at any time, except while the pool sets an object or a resolution.
-    pub unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) -> Result<(), Error> {
+    pub(crate) unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) -> Result<(), Taken> {
         // SAFETY: the caller's contract.
         unsafe { self.gate.exchange(moc.map(|moc| (moc, false))) }
     }
@@ -220,7 +199,7 @@ impl CullingThreadpool {
     /// Gives the object another resolution, after what was submitted is drawn, and clears it.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`] where the pool has no object; as [`MaskedOcclusionCulling::set_resolution`].
+    /// [`Error::NoObject`]; as [`MaskedOcclusionCulling::set_resolution`].
     pub fn set_resolution(&self, width: u32, height: u32) -> Result<(), Error> {
         self.gate.resize(|moc| moc.set_resolution(width, height))
     }
@@ -228,15 +207,14 @@ impl CullingThreadpool {
     /// Flushes, and sets the object's near plane, in clip-space w.
     ///
     /// # Errors
-    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged. [`Error::NoBuffer`] if the pool has no
-    /// object.
+    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged. [`Error::NoObject`].
     pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
         self.flush();
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
         }
         let pass = self.gate.pass();
-        let target = pass.as_ref().ok_or(Error::NoBuffer)?;
+        let target = pass.as_ref().ok_or(Error::NoObject)?;
         let _recording = self.gate.recording(target);
         target.moc().set_near_shared(near)
     }
@@ -244,7 +222,7 @@ impl CullingThreadpool {
     /// Flushes, and clears the object. The buffer is clear when it returns.
     ///
     /// # Errors
-    /// [`Error::NoBuffer`].
+    /// [`Error::NoObject`].
     pub fn clear_buffer(&self) -> Result<(), Error> {
         self.gate.with_buffer(|target| {
             let _recording = self.gate.recording(target);
@@ -270,41 +248,40 @@ impl CullingThreadpool {
     /// The vertices and the indices stay as they are until the pool was flushed.
     ///
     /// # Errors
-    /// As there.
+    /// As there, and [`Error::NoObject`].
     pub unsafe fn render_triangles(
         &self,
         vertices: Vertices<'_>,
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<(), Error> {
-        if let Err(error) = self.with_object(|moc| moc.check_mesh(&vertices, triangles)) {
-            self.refuse();
-            return Err(error);
+        match self.with_object(|moc| moc.mesh(&vertices, triangles, options)) {
+            // SAFETY: the caller's contract.
+            Ok(mesh) => unsafe { self.render_mesh(&mesh) },
+            Err(error) => {
+                self.refuse();
+                Err(error)
+            }
         }
-        // SAFETY: `check_mesh` saw that every index names a vertex; the rest is the caller's contract.
-        unsafe { self.render_triangles_unchecked(vertices.source(), triangles, options) }
     }
 
     /// A draw that is refused counts as one without triangles: a program that rotates among arrays does not see its status in C++.
     pub(crate) fn refuse(&self) {
         let vertices = VertexSource { base: core::ptr::null(), layout: VertexLayout::CLIP_SPACE };
         let (triangles, options) = (NonNull::<u32>::dangling().as_ptr().cast_const(), DrawOptions::default());
+        let call = Call { vertices, triangles, indices: 0, matrix: None, options, near: 0.0, clears: 0 };
         // Without an object nothing is in flight.
         let _ = self.gate.with_buffer(|_| {
-            self.gate.workers.submit(Call { vertices, triangles, indices: 0, options, near: 0.0, clears: 0 }, true);
-            Ok(())
+            self.gate.workers.submit(call, true);
+            Ok::<(), Error>(())
         });
     }
 
     /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`, and they and the indices
-    /// stay as they are until the pool was flushed.
-    pub(crate) unsafe fn render_triangles_unchecked(
-        &self,
-        vertices: VertexSource,
-        triangles: &[u32],
-        options: &DrawOptions,
-    ) -> Result<(), Error> {
+    /// Every vertex from the lowest to the highest index of the mesh can be read, and they and the indices stay as they are
+    /// until the pool was flushed.
+    pub(crate) unsafe fn render_mesh(&self, mesh: &Mesh<'_>) -> Result<(), Error> {
+        let (vertices, triangles, matrix, options) = (mesh.vertices(), mesh.triangles(), mesh.matrix(), mesh.options());
         self.gate.with_buffer(|target| {
             let _recording = self.gate.recording(target);
             let near = target.moc().near_clip_plane();
@@ -313,16 +290,15 @@ impl CullingThreadpool {
                 // A call without triangles is one part, too: it counts among those whose arrays a program rotates.
                 let (part, later) = rest.split_at(rest.len().min(3 * CALL_TRIANGLES));
                 let (triangles, indices) = (part.as_ptr(), part.len());
-                let call = Call { vertices, triangles, indices, options: *options, near, clears: 0 };
+                let (matrix, options) = (matrix.copied(), *options);
+                let call = Call { vertices, triangles, indices, matrix, options, near, clears: 0 };
                 self.gate.workers.submit(call, later.is_empty());
                 rest = later;
                 if rest.is_empty() {
                     break;
                 }
             }
-            // SAFETY: the caller's contract: every vertex from the lowest to the highest index can be read.
-            let mesh = unsafe { Mesh::new(vertices, triangles, options) };
-            target.moc().recorder().render_triangles(None, &mesh);
+            target.moc().recorder().render_triangles(None, mesh);
             Ok(())
         })
     }
@@ -350,7 +326,7 @@ impl CullingThreadpool {
     /// Tests a rectangle against what is drawn by now; see [`MaskedOcclusionCulling::test_rect`].
     ///
     /// # Errors
-    /// [`Error::NoBuffer`].
+    /// [`Error::NoObject`].
     pub fn test_rect(
         &self,
         x_min: f32,
@@ -359,7 +335,7 @@ impl CullingThreadpool {
         y_max: f32,
         w_min: f32,
     ) -> Result<CullingResult, Error> {
-        self.gate.with_buffer(|target| self.gate.rect(target, [x_min, y_min, x_max, y_max], w_min))
+        self.gate.with_buffer(|target| Ok(self.gate.rect(target, [x_min, y_min, x_max, y_max], w_min)))
     }
 
     /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`]. `Visible` where they are
@@ -373,31 +349,20 @@ impl CullingThreadpool {
         triangles: &[u32],
         options: &DrawOptions,
     ) -> Result<CullingResult, Error> {
-        self.with_object(|moc| moc.check_mesh(&vertices, triangles))?;
-        // SAFETY: `check_mesh` saw that every index names a vertex of the slice.
-        unsafe { self.test_triangles_unchecked(vertices.source(), triangles, options) }
+        let mesh = self.with_object(|moc| moc.mesh(&vertices, triangles, options))?;
+        self.test_mesh(&mesh)
     }
 
     /// As [`Self::test_triangles`].
-    ///
-    /// # Safety
-    /// Every vertex from the lowest to the highest index in `triangles` can be read through `vertices`.
-    pub(crate) unsafe fn test_triangles_unchecked(
-        &self,
-        vertices: VertexSource,
-        triangles: &[u32],
-        options: &DrawOptions,
-    ) -> Result<CullingResult, Error> {
-        // SAFETY: the caller's contract.
-        let mesh = unsafe { Mesh::new(vertices, triangles, options) };
-        self.gate.with_buffer(|target| self.gate.mesh(target, &mesh))
+    pub(crate) fn test_mesh(&self, mesh: &Mesh<'_>) -> Result<CullingResult, Error> {
+        self.gate.with_buffer(|target| Ok(self.gate.mesh(target, mesh)))
     }
 
     /// Looks at the object itself, which has a buffer.
-    pub(crate) fn with_object<R>(
+    pub(crate) fn with_object<R, E: From<Error>>(
         &self,
-        look: impl FnOnce(&MaskedOcclusionCulling) -> Result<R, Error>,
-    ) -> Result<R, Error> {
+        look: impl FnOnce(&MaskedOcclusionCulling) -> Result<R, E>,
+    ) -> Result<R, E> {
         self.gate.with_buffer(|target| look(target.moc()))
     }
 
@@ -406,31 +371,36 @@ impl CullingThreadpool {
     /// # Errors
     /// As there.
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
-        self.with_pixels(|_| Ok(depth), flip_y)
+        self.with_pixels(|_| Ok::<_, Error>(depth), flip_y)
     }
 
     /// The same into an array that is found when its length is known.
-    pub(crate) fn with_pixels<'a>(
+    pub(crate) fn with_pixels<'a, E: From<Error>>(
         &self,
-        array: impl FnOnce(usize) -> Result<&'a mut [f32], Error>,
+        array: impl FnOnce(usize) -> Result<&'a mut [f32], E>,
         flip_y: bool,
-    ) -> Result<(), Error> {
+    ) -> Result<(), E> {
         self.flush();
-        let write = |moc: &MaskedOcclusionCulling| {
-            let (width, height) = moc.resolution().ok_or(Error::NoBuffer)?;
-            moc.write_pixels(array(width as usize * height as usize)?, flip_y)?;
-            Ok(CullingResult::Visible)
+        let write = |moc: &MaskedOcclusionCulling| -> Result<(), E> {
+            let (width, height) = moc.resolution();
+            Ok(moc.compute_pixel_depth_buffer(array(width as usize * height as usize)?, flip_y)?)
         };
-        self.gate.with_buffer(|target| target.query(target.all_tiles(), write)).map(|_| ())
+        self.gate.with_buffer(|target| target.look(target.all_tiles(), write).0)
     }
 
     /// What the object counted, after a flush; see [`MaskedOcclusionCulling::statistics`].
     ///
     /// # Errors
-    /// [`Error::NoBuffer`].
+    /// [`Error::NoObject`].
     pub fn statistics(&self) -> Result<crate::Statistics, Error> {
         self.flush();
-        Ok(self.gate.pass().as_ref().ok_or(Error::NoBuffer)?.moc().statistics())
+        Ok(self.gate.pass().as_ref().ok_or(Error::NoObject)?.moc().statistics())
+    }
+}
+
+impl fmt::Debug for CullingThreadpool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CullingThreadpool").field("threads", &self.thread_count()).finish_non_exhaustive()
     }
 }
 
@@ -455,6 +425,7 @@ fn thread_name(prefix: &str, number: u32) -> String {
 }
 
 /// Calls of a [`CullingThreadpool::scope`].
+#[derive(Debug)]
 pub struct Scope<'e> {
     pool: &'e CullingThreadpool,
     /// Invariant, so that what is lent cannot be made to live shorter.

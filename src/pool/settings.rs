@@ -1,6 +1,16 @@
 //! Settings of a pool.
 
+use core::fmt;
+
 /// Settings of a [`CullingThreadpool`](crate::CullingThreadpool).
+///
+/// ```
+/// use masked_occlusion_culling::{CullingThreadpool, ThreadpoolSettings};
+///
+/// let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(3).with_bins(4, 8))?;
+/// # Ok::<(), masked_occlusion_culling::Error>(())
+/// ```
+#[non_exhaustive]
 pub struct ThreadpoolSettings {
     /// Worker threads of the pool. Fewer are started if there are fewer processors besides the caller's, but at least one: more
     /// would only take turns with the others, and preempt one that holds a bin. 0: the work is done by the calls that flush or
@@ -40,5 +50,55 @@ impl Default for ThreadpoolSettings {
             thread_name: String::from("culling"),
             on_thread_start: None,
         }
+    }
+}
+
+impl fmt::Debug for ThreadpoolSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ThreadpoolSettings")
+            .field("threads", &self.threads)
+            .field("bins", &(self.bins_w, self.bins_h))
+            .field("max_jobs", &self.max_jobs)
+            .field("processors", &self.processors)
+            .field("external_threads", &self.external_threads)
+            .field("thread_name", &self.thread_name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl ThreadpoolSettings {
+    /// These settings with another number of worker threads.
+    pub fn with_threads(self, threads: u32) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// These settings with other columns and rows of bins.
+    pub fn with_bins(self, bins_w: u32, bins_h: u32) -> Self {
+        Self { bins_w, bins_h, ..self }
+    }
+
+    /// These settings with another limit of calls whose arrays may still be read.
+    pub fn with_max_jobs(self, max_jobs: u32) -> Self {
+        Self { max_jobs, ..self }
+    }
+
+    /// These settings with another number of processors.
+    pub fn with_processors(self, processors: u32) -> Self {
+        Self { processors, ..self }
+    }
+
+    /// These settings with another number of the engine's threads that call `work_once`.
+    pub fn with_external_threads(self, external_threads: u32) -> Self {
+        Self { external_threads, ..self }
+    }
+
+    /// These settings with another prefix of the thread names.
+    pub fn with_thread_name(self, prefix: impl Into<String>) -> Self {
+        Self { thread_name: prefix.into(), ..self }
+    }
+
+    /// These settings with a function that each worker thread calls when it starts, with its number.
+    pub fn with_thread_start(self, start: impl Fn(u32) + Send + Sync + 'static) -> Self {
+        Self { on_thread_start: Some(Box::new(start)), ..self }
     }
 }

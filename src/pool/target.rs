@@ -11,16 +11,17 @@ use crate::simd::MAX_LANES;
 use crate::sink::BinnedTriangles;
 use crate::source::Mesh;
 use crate::vertices::VertexSource;
-use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling};
+use crate::{CullingResult, DrawOptions, MaskedOcclusionCulling};
 
 /// A call, or a part of it, as it was submitted.
 pub(super) struct Call {
     pub vertices: VertexSource,
     pub triangles: *const u32,
     pub indices: usize,
+    pub matrix: Option<[f32; 16]>,
     pub options: DrawOptions,
     pub near: f32,
-    /// Clears that were submitted before it; the workers counts.
+    /// Clears that were submitted before it; the workers count.
     pub clears: u64,
 }
 
@@ -147,10 +148,9 @@ impl Target {
             // SAFETY: the caller's contract.
             let mesh = unsafe {
                 let triangles = core::slice::from_raw_parts(call.triangles, call.indices);
-                Mesh::new(call.vertices, triangles, &call.options)
+                Mesh::new(call.vertices, call.matrix.as_ref(), triangles, &call.options)
             };
-            let done = self.moc().bin(&mesh, call.near, (self.grid.bounds(), prefilter), binned);
-            debug_assert_eq!(done, Ok(()), "a target has a buffer");
+            self.moc().bin(&mesh, call.near, (self.grid.bounds(), prefilter), binned);
         }
     }
 
@@ -166,10 +166,7 @@ impl Target {
 
     /// Does work of one kind, which is one piece of it unless it is triangles.
     fn draw_run(&self, bin: usize, clip: TileRect, piece: &mut Piece, run: &[Arc<Work>]) {
-        let Ok(buffer) = self.moc().buffer() else {
-            debug_assert!(false, "a target has a buffer");
-            return;
-        };
+        let buffer = self.moc().buffer();
         // SAFETY: this thread holds the bin's lock for writing, so nobody else writes its tiles and coarse cells. Threads that bin
         // read `z_min` word by word, and direct queries of the object that began before discard their answers.
         let mut region = unsafe { Region::new(buffer, clip, Some(&mut piece.since_refresh)) };
@@ -193,6 +190,7 @@ impl Target {
     fn merge(&self, others: &[Shared], region: Region<'_>) {
         // SAFETY: who submitted them vouches for them.
         let others: Vec<&MaskedOcclusionCulling> = others.iter().map(|other| unsafe { other.0.as_ref() }).collect();
+        // They fitted when they were submitted, and nobody changes them meanwhile.
         if let Ok(theirs) = self.moc().mergeable(&others) {
             // SAFETY: whoever submitted the others vouches for them.
             unsafe { crate::buffer::merge::merge(self.moc().level(), region, &theirs) };
@@ -201,11 +199,15 @@ impl Target {
 
     /// Queries while nobody draws in the bins that hold a tile of a rectangle, or one whose `z_min` lies in a vector with those of
     /// its tiles. What was drawn before a clear that was submitted, but not done yet, hides nothing.
-    pub fn query(
-        &self,
-        tiles: TileRect,
-        ask: impl FnOnce(&MaskedOcclusionCulling) -> Result<CullingResult, Error>,
-    ) -> Result<CullingResult, Error> {
+    pub fn query(&self, tiles: TileRect, ask: impl FnOnce(&MaskedOcclusionCulling) -> CullingResult) -> CullingResult {
+        match self.look(tiles, ask) {
+            (CullingResult::Occluded, true) => CullingResult::Visible,
+            (result, _) => result,
+        }
+    }
+
+    /// The same for whatever `ask` returns. True: of what was drawn some is to be cleared yet.
+    pub fn look<R>(&self, tiles: TileRect, ask: impl FnOnce(&MaskedOcclusionCulling) -> R) -> (R, bool) {
         let clears = self.clears.load(Ordering::Acquire);
         let read = |bin: usize| self.bins[bin].piece.read().unwrap_or_else(PoisonError::into_inner);
         // Vectors go on with the next rows of tiles.
@@ -219,10 +221,7 @@ impl Target {
         let stale = self.grid.touched(tiles).any(|bin| self.bins[bin].clears.load(Ordering::Acquire) < clears);
         let result = ask(self.moc());
         drop((first, rest));
-        match result? {
-            CullingResult::Occluded if stale => Ok(CullingResult::Visible),
-            result => Ok(result),
-        }
+        (result, stale)
     }
 
     /// The same after its object got another resolution.
@@ -260,5 +259,5 @@ impl Drop for Target {
 
 /// All tiles of an object, or one where it has no buffer yet.
 fn tiles_of(moc: &MaskedOcclusionCulling) -> TileRect {
-    moc.buffer().map_or(TileRect { x0: 0, y0: 0, x1: 1, y1: 1 }, |buffer| buffer.all_tiles())
+    if moc.has_buffer() { moc.buffer().all_tiles() } else { TileRect { x0: 0, y0: 0, x1: 1, y1: 1 } }
 }

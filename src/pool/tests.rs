@@ -8,26 +8,29 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use super::schedule::BREAKS;
-use super::{CullingThreadpool, MAX_THREADS};
-use crate::{DrawOptions, MaskedOcclusionCulling, VertexLayout, Vertices};
+use super::{CullingThreadpool, MAX_THREADS, ThreadpoolSettings};
+use crate::{DrawOptions, Error, MaskedOcclusionCulling, Settings, Vertices};
+
+fn pool(threads: u32, processors: u32) -> Result<CullingThreadpool, Error> {
+    CullingThreadpool::new(ThreadpoolSettings::default().with_threads(threads).with_processors(processors))
+}
 
 #[test]
 fn there_are_no_more_threads_than_processors_besides_the_callers_but_one_at_least() {
     for (threads, processors, started) in [(0, 8, 0), (1, 1, 1), (1, 8, 1), (8, 1, 1), (8, 2, 1), (8, 5, 4)] {
-        let pool = CullingThreadpool::with_processors(threads, 4, 4, 32, processors).unwrap();
+        let pool = pool(threads, processors).unwrap();
         assert_eq!(pool.thread_count(), started, "{threads} threads, {processors} processors");
     }
-    assert!(CullingThreadpool::with_processors(MAX_THREADS + 1, 4, 4, 32, 2).is_err());
+    assert!(pool(MAX_THREADS + 1, 2).is_err());
 }
 
 /// Makes the scheduler panic while slices are lent to it, in a separate process.
 fn break_it(who: &str) {
-    let mut culling = MaskedOcclusionCulling::default();
-    culling.set_resolution(640, 400).unwrap();
-    let pool = CullingThreadpool::with_processors(1, 1, 1, 32, 2).unwrap();
-    pool.set_buffer(culling);
-    let (vertices, triangles) = (vec![1.0; 16], [0, 1, 2]);
-    let vertices = Vertices::new(&vertices, VertexLayout::CLIP_SPACE).unwrap();
+    let settings = ThreadpoolSettings::default().with_threads(1).with_bins(1, 1).with_processors(2);
+    let pool = CullingThreadpool::new(settings).unwrap();
+    pool.set_buffer(MaskedOcclusionCulling::new(640, 400, Settings::default()).unwrap());
+    let (vertices, triangles) = ([[1.0; 4]; 4], [0, 1, 2]);
+    let vertices = Vertices::clip_space(&vertices);
     let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         pool.scope(|scope| {
             scope.render_triangles(vertices, &triangles, &DrawOptions::default()).unwrap();

@@ -7,8 +7,6 @@ use std::io;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The object has no buffer yet.
-    NoBuffer,
     /// The object records already.
     Busy,
     /// The file could not be made, written or read.
@@ -27,7 +25,6 @@ pub enum RecordingError {
 impl fmt::Display for RecordingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoBuffer => f.write_str("no buffer: the resolution was never set"),
             Self::OutOfMemory => f.write_str("out of memory"),
             Self::Busy => f.write_str("a recording is under way already"),
             Self::File(error) => write!(f, "a recording cannot be made, written or read: {error}"),
@@ -49,17 +46,5 @@ impl std::error::Error for RecordingError {
 impl From<io::Error> for RecordingError {
     fn from(error: io::Error) -> Self {
         Self::File(error)
-    }
-}
-
-impl From<RecordingError> for crate::Error {
-    fn from(error: RecordingError) -> Self {
-        match error {
-            RecordingError::NoBuffer => Self::NoBuffer,
-            RecordingError::Busy => Self::Busy,
-            RecordingError::OutOfMemory => Self::OutOfMemory,
-            RecordingError::File(_) => Self::File,
-            RecordingError::Invalid { .. } => Self::InvalidRecording,
-        }
     }
 }

@@ -2,37 +2,38 @@
 
 use std::path::Path;
 
-use glam::Mat4;
-
 use super::error::RecordingError;
 use super::format::{CLEAR_BUFFER, END, RENDER_TRIANGLES, SIGNATURE, TEST_RECT, TEST_TRIANGLES, UNKNOWN};
 use crate::buffer::MAX_SIZE;
 use crate::vertices::vertex_count;
-use crate::{BackfaceWinding, ClipPlanes, CullingResult, DrawOptions, Error, VertexLayout, Vertices};
+use crate::{
+    BackfaceWinding, ClipPlanes, ClipSpaceLayout, CullingResult, DrawOptions, Error, Matrix, VertexLayout, VertexSpace,
+    Vertices,
+};
 
 /// A recorded frame, or several.
 ///
 /// ```
-/// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Recording, Vertices};
+/// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Recording, Settings, Vertices};
 ///
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("frame.mocrec");
-/// let mut culling = MaskedOcclusionCulling::default();
-/// culling.set_resolution(640, 360)?;
+/// let mut culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
 /// culling.recorder_start(&path)?;
-/// culling.clear_buffer()?;
+/// culling.clear_buffer();
 /// let wall = [[-10.0, -10.0, 0.0, 10.0], [30.0, -10.0, 0.0, 10.0], [-10.0, 30.0, 0.0, 10.0]];
-/// culling.render_triangles(Vertices::from_clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
-/// culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0)?;
+/// culling.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &DrawOptions::default())?;
+/// culling.test_rect(-0.5, -0.5, 0.0, 0.0, 12.0);
 /// culling.recorder_stop()?;
 ///
 /// let recording = Recording::load(&path)?;
 /// assert_eq!(recording.calls[2].result(), Some(CullingResult::Occluded));
-/// let mut again = MaskedOcclusionCulling::default();
+/// let mut again = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
 /// recording.play(&mut again, |call, answer| assert_eq!(answer, call.result()))?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// The near plane, in clip-space w.
     pub near_clip_plane: f32,
@@ -44,6 +45,7 @@ pub struct Recording {
 
 /// A recorded call.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum RecordedCall {
     /// The buffer was cleared.
     ClearBuffer,
@@ -57,6 +59,7 @@ pub enum RecordedCall {
 
 /// A rectangle and what was answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedRect {
     /// The answer, where one is known.
     pub result: Option<CullingResult>,
@@ -68,16 +71,17 @@ pub struct RecordedRect {
 
 /// Triangles and what was answered.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedMesh {
     /// The answer, where one is known.
     pub result: Option<CullingResult>,
     /// The vertices, in words of which the layout says which are which.
     pub vertices: Vec<f32>,
-    /// Where the coordinates of a vertex lie.
-    pub layout: VertexLayout,
+    /// Their space: where the coordinates of a vertex lie, and the matrix, if there is one.
+    pub space: VertexSpace,
     /// Three a triangle, each the number of a vertex.
     pub triangles: Vec<u32>,
-    /// Matrix, winding and planes.
+    /// Winding and planes.
     pub options: DrawOptions,
 }
 
@@ -87,7 +91,7 @@ impl RecordedMesh {
     /// # Errors
     /// [`Error::InvalidLayout`]; never of what was loaded.
     pub fn vertices(&self) -> Result<Vertices<'_>, Error> {
-        Vertices::new(&self.vertices, self.layout)
+        Vertices::new(&self.vertices, self.space)
     }
 }
 
@@ -212,7 +216,7 @@ impl<'a> Reader<'a> {
             return Ok(RecordedMesh {
                 result,
                 vertices,
-                layout: VertexLayout::CLIP_SPACE,
+                space: ClipSpaceLayout::XYZW.into(),
                 triangles,
                 options: DrawOptions::default(),
             });
@@ -231,7 +235,7 @@ impl<'a> Reader<'a> {
                 for number in &mut matrix {
                     *number = self.float()?;
                 }
-                Some(Mat4::from_cols_array(&matrix))
+                Some(Matrix::from(matrix))
             }
             _ => return Err(self.invalid("whether there is a matrix is neither yes nor no")),
         };
@@ -245,7 +249,7 @@ impl<'a> Reader<'a> {
             .map_err(|_| self.invalid("a vertex layout has a negative stride or offset"))?;
         let named = |&index: &u32| (index as usize) < whole;
         self.check(triangles.iter().all(named), "an index names a vertex that is not there")?;
-        let options = DrawOptions { model_to_clip, winding, clip_planes };
-        Ok(RecordedMesh { result, vertices, layout, triangles, options })
+        let (space, options) = (VertexSpace::from_parts(layout, model_to_clip), DrawOptions { winding, clip_planes });
+        Ok(RecordedMesh { result, vertices, space, triangles, options })
     }
 }

@@ -35,7 +35,7 @@ impl<W: Write> Writer<W> {
     }
 
     pub fn triangles(&mut self, kind: u8, result: Option<CullingResult>, mesh: &Mesh<'_>) -> io::Result<()> {
-        let (vertices, triangles, options) = (mesh.vertices(), mesh.triangles(), mesh.options());
+        let (vertices, triangles, matrix, options) = (mesh.vertices(), mesh.triangles(), mesh.matrix(), mesh.options());
         let bounds = triangles.iter().min().copied().zip(triangles.iter().max().copied());
         let too_large =
             || io::Error::new(io::ErrorKind::InvalidInput, "more vertices or triangles than the format can count");
@@ -61,9 +61,9 @@ impl<W: Write> Writer<W> {
         for index in triangles {
             self.words(&[index - low])?;
         }
-        self.out.write_all(&[options.model_to_clip.is_some().into()])?;
-        if let Some(matrix) = options.model_to_clip {
-            self.words(&matrix.to_cols_array().map(f32::to_bits))?;
+        self.out.write_all(&[matrix.is_some().into()])?;
+        if let Some(matrix) = matrix {
+            self.words(&matrix.map(f32::to_bits))?;
         }
         self.int(options.clip_planes.bits() as i32)?;
         self.int(options.winding as i32)?;

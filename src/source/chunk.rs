@@ -149,11 +149,22 @@ pub(super) unsafe fn project<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::lines;
+    use crate::source::Mesh;
     use crate::source::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES};
     use crate::vertices::VertexSource;
     use crate::{
         BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, VertexLayout,
     };
+
+    /// In clip space, with the default options.
+    ///
+    /// # Safety
+    /// As [`Mesh::new`].
+    unsafe fn mesh(vertices: VertexSource, triangles: &[u32]) -> Mesh<'_> {
+        const OPTIONS: DrawOptions = DrawOptions::new();
+        // SAFETY: the caller's contract.
+        unsafe { Mesh::new(vertices, None, triangles, &OPTIONS) }
+    }
 
     #[test]
     fn what_is_asked_for_ahead_has_an_end() {
@@ -174,12 +185,11 @@ mod tests {
         let layout = VertexLayout::new(0, 4, 12);
         for &implementation in Implementation::available() {
             let settings = Settings { implementation, ..Settings::default() };
-            let mut culling = MaskedOcclusionCulling::new(settings);
-            culling.set_resolution(64, 64).unwrap();
+            let mut culling = MaskedOcclusionCulling::new(64, 64, settings).unwrap();
             let vertices = VertexSource { base: vertex.as_ptr().cast(), layout };
             // SAFETY: with a stride of 0 every index names the one vertex.
-            let result = unsafe { culling.render_triangles_unchecked(vertices, &triangles, &DrawOptions::default()) };
-            assert_eq!(result.unwrap(), CullingResult::ViewCulled);
+            let result = culling.render_mesh(&unsafe { mesh(vertices, &triangles) });
+            assert_eq!(result, CullingResult::ViewCulled);
         }
     }
 
@@ -188,13 +198,12 @@ mod tests {
         let vertex = [0.0_f32, 0.0, 0.0, 1.0];
         for &implementation in Implementation::available() {
             let settings = Settings { implementation, ..Settings::default() };
-            let mut culling = MaskedOcclusionCulling::new(settings);
-            culling.set_resolution(64, 64).unwrap();
+            let mut culling = MaskedOcclusionCulling::new(64, 64, settings).unwrap();
             let vertices = VertexSource { base: vertex.as_ptr().cast(), layout: VertexLayout::new(0, 4, 12) };
             let triangles = [0, u32::MAX, u32::MAX / 2];
             // SAFETY: with a stride of 0 every index names the one vertex.
-            let result = unsafe { culling.render_triangles_unchecked(vertices, &triangles, &DrawOptions::default()) };
-            assert_eq!(result.unwrap(), CullingResult::ViewCulled);
+            let result = culling.render_mesh(&unsafe { mesh(vertices, &triangles) });
+            assert_eq!(result, CullingResult::ViewCulled);
         }
     }
 
@@ -237,17 +246,16 @@ mod tests {
             {
                 let depth = |first: u32| {
                     let settings = Settings { implementation, ..Settings::default() };
-                    let mut culling = MaskedOcclusionCulling::new(settings);
-                    culling.set_resolution(width, height).unwrap();
+                    let mut culling = MaskedOcclusionCulling::new(width, height, settings).unwrap();
                     let before = (first as usize).wrapping_mul(layout.stride as usize);
                     let base = data[1..].as_ptr().cast::<u8>().wrapping_sub(before);
                     let triangles: Vec<u32> = triangles.iter().map(|k| k + first).collect();
                     let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
+                    let vertices = VertexSource { base, layout };
                     // SAFETY: the indices name the vertices of the array.
-                    let result = unsafe {
-                        culling.render_triangles_unchecked(VertexSource { base, layout }, &triangles, &options)
-                    };
-                    assert_eq!(result.unwrap(), CullingResult::Visible);
+                    let mesh = unsafe { Mesh::new(vertices, None, &triangles, &options) };
+                    let result = culling.render_mesh(&mesh);
+                    assert_eq!(result, CullingResult::Visible);
                     let mut depth = vec![0.0; (width * height) as usize];
                     culling.compute_pixel_depth_buffer(&mut depth, false).unwrap();
                     depth

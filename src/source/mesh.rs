@@ -21,6 +21,7 @@ const FULL: usize = CAPACITY - MAX_LANES * clip::MAX_TRIANGLES;
 #[derive(Clone, Copy)]
 pub(crate) struct Mesh<'a> {
     vertices: VertexSource,
+    matrix: Option<&'a [f32; 16]>,
     triangles: &'a [u32],
     options: &'a DrawOptions,
 }
@@ -29,8 +30,18 @@ impl<'a> Mesh<'a> {
     /// # Safety
     /// As long as the mesh exists, every vertex from the lowest to the highest index can be read.
     #[inline(always)]
-    pub unsafe fn new(vertices: VertexSource, triangles: &'a [u32], options: &'a DrawOptions) -> Self {
-        Self { vertices, triangles, options }
+    pub unsafe fn new(
+        vertices: VertexSource,
+        matrix: Option<&'a [f32; 16]>,
+        triangles: &'a [u32],
+        options: &'a DrawOptions,
+    ) -> Self {
+        Self { vertices, matrix, triangles, options }
+    }
+
+    /// From model space to clip space; `None` for vertices in clip space.
+    pub fn matrix(&self) -> Option<&'a [f32; 16]> {
+        self.matrix
     }
 
     pub fn vertices(&self) -> VertexSource {
@@ -70,7 +81,7 @@ impl TriangleSource for MeshTriangles<'_> {
     fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool {
         let Self { mesh, camera, facing } = self;
         let camera = &camera.with_guard_band(K::Coverage::GUARD_BAND);
-        let reader = VertexReader::new(s, mesh.vertices, mesh.options.model_to_clip.as_ref());
+        let reader = VertexReader::new(s, mesh.vertices, mesh.matrix);
         let screen = stream.setup.buffer.size();
         let mut memory = Scratch::uninit();
         let scratch = Scratch::of(&mut memory);

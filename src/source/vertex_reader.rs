@@ -1,7 +1,5 @@
 //! Reads vertices of any layout into vectors, and projects them into the scratch.
 
-use glam::Mat4;
-
 use super::scratch::Scratch;
 use crate::VertexLayout;
 use crate::geometry::project::MatrixRows;
@@ -42,7 +40,7 @@ impl Packing {
 
 impl<S: Simd> VertexReader<S> {
     #[inline(always)]
-    pub fn new(s: S, source: VertexSource, matrix: Option<&Mat4>) -> Self {
+    pub fn new(s: S, source: VertexSource, matrix: Option<&[f32; 16]>) -> Self {
         Self { s, source, packing: Packing::of(source.layout), rows: matrix.map(|m| MatrixRows::new(s, m)) }
     }
 

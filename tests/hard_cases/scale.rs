@@ -4,7 +4,7 @@
 //! that transforms in double: where products and sums of f32 lose digits, the triangle is another one.
 
 use glam::Mat4;
-use masked_occlusion_culling::{DrawOptions, Vertices, YAxis};
+use masked_occlusion_culling::{Vertices, YAxis};
 
 use crate::cases::Case;
 use crate::cases::measured::Measured;
@@ -65,14 +65,13 @@ fn exact_clip(matrix: &Mat4, t: &Positions) -> [[f64; 3]; 3] {
 
 /// Draws each triangle and measures it; returns the depths of all.
 fn measure(subject: &mut Subject, measured: &mut Measured, matrix: &Mat4, triangles: &[Positions]) -> Vec<f32> {
-    let options = DrawOptions { model_to_clip: Some(*matrix), ..both_sides() };
     let mut all = Vec::new();
     for t in triangles {
         let clip = exact_clip(matrix, t);
         let Some(exact) = Homogeneous::new(&clip, 0.0, SIZE, false) else { continue };
         let farthest = clip.iter().fold(0.0, |m: f64, v| m.max(v[2]));
         subject.clear();
-        subject.render(Vertices::from_positions(t), &[0, 1, 2], &options);
+        subject.render(Vertices::model_space(t, matrix.to_cols_array()), &[0, 1, 2], &both_sides());
         measured.clipped(&exact, 1.0 / farthest, subject.depth(), SIZE.0);
         all.extend_from_slice(subject.depth());
     }

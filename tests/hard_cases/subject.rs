@@ -38,7 +38,7 @@ impl Subject {
     }
 
     pub fn clear(&mut self) {
-        self.objects.iter_mut().for_each(|moc| moc.clear_buffer().unwrap());
+        self.objects.iter_mut().for_each(|moc| moc.clear_buffer());
     }
 
     /// Draws a mesh.
@@ -50,7 +50,7 @@ impl Subject {
 
     /// Draws both sides of clip-space vertices.
     pub fn draw_mesh(&mut self, vertices: &[[f32; 4]], indices: &[u32]) {
-        self.render(Vertices::from_clip_space(vertices), indices, &both_sides());
+        self.render(Vertices::clip_space(vertices), indices, &both_sides());
     }
 
     /// Draws both sides of clip-space vertices, three a triangle.
@@ -72,7 +72,7 @@ impl Subject {
 
     /// What all objects answer about both sides of clip-space vertices.
     pub fn test_mesh(&self, vertices: &[[f32; 4]], indices: &[u32]) -> CullingResult {
-        let vertices = Vertices::from_clip_space(vertices);
+        let vertices = Vertices::clip_space(vertices);
         self.answer(|moc| moc.test_triangles(vertices, indices, &both_sides()).unwrap())
     }
 
@@ -86,7 +86,7 @@ impl Subject {
         let at = |n: usize, size: usize| (2.0 * (n as f64 + 0.5) / size as f64 - 1.0) as f32;
         let (x, row) = (at(column, self.size.0), at(row, self.size.1));
         let y = if self.y_up() { row } else { -row };
-        self.answer(|moc| moc.test_rect(x, y, x, y, w).unwrap())
+        self.answer(|moc| moc.test_rect(x, y, x, y, w))
     }
 
     fn answer(&self, ask: impl Fn(&MaskedOcclusionCulling) -> CullingResult) -> CullingResult {

@@ -4,8 +4,8 @@
 pub mod triangles;
 
 use masked_occlusion_culling::{
-    Allocator, BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings,
-    UpdateRule, Vertices, YAxis,
+    BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, UpdateRule,
+    Vertices, YAxis,
 };
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 
@@ -16,9 +16,9 @@ pub const RULES: [UpdateRule; 4] =
     [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 pub const AXES: [YAxis; 2] = [YAxis::Down, YAxis::Up];
 
-/// Both sides, all planes, no matrix.
+/// Both sides, all planes.
 pub fn both_sides() -> DrawOptions {
-    DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() }
+    DrawOptions::default().with_winding(BackfaceWinding::None)
 }
 
 pub fn object(
@@ -27,11 +27,13 @@ pub fn object(
     axis: YAxis,
     size: (usize, usize),
 ) -> MaskedOcclusionCulling {
-    let settings =
-        Settings { implementation, update_rule: rule, y_axis: axis, allocator: Allocator::SYSTEM, statistics: true };
-    let mut moc = MaskedOcclusionCulling::new(settings);
+    let settings = Settings::default()
+        .with_implementation(implementation)
+        .with_update_rule(rule)
+        .with_y_axis(axis)
+        .with_statistics(true);
+    let moc = MaskedOcclusionCulling::new(size.0 as u32, size.1 as u32, settings).unwrap();
     assert_eq!(moc.implementation(), implementation, "an available instruction set is refused");
-    moc.set_resolution(size.0 as u32, size.1 as u32).unwrap();
     moc
 }
 
@@ -67,32 +69,32 @@ pub fn mesh(triangles: &[Triangle], size: (usize, usize), axis: YAxis) -> (Vec<[
 }
 
 fn size_of(moc: &MaskedOcclusionCulling) -> (usize, usize) {
-    let (w, h) = moc.resolution().unwrap();
+    let (w, h) = moc.resolution();
     (w as usize, h as usize)
 }
 
 /// Draws both sides of triangles in one call.
 pub fn draw(moc: &mut MaskedOcclusionCulling, triangles: &[Triangle]) -> CullingResult {
     let (vertices, indices) = mesh(triangles, size_of(moc), moc.y_axis());
-    moc.render_triangles(Vertices::from_clip_space(&vertices), &indices, &both_sides()).unwrap()
+    moc.render_triangles(Vertices::clip_space(&vertices), &indices, &both_sides()).unwrap()
 }
 
 /// Tests both sides of triangles in one call.
 pub fn test(moc: &MaskedOcclusionCulling, triangles: &[Triangle]) -> CullingResult {
     let (vertices, indices) = mesh(triangles, size_of(moc), moc.y_axis());
-    moc.test_triangles(Vertices::from_clip_space(&vertices), &indices, &both_sides()).unwrap()
+    moc.test_triangles(Vertices::clip_space(&vertices), &indices, &both_sides()).unwrap()
 }
 
 /// Draws both sides of clip-space vertices, three a triangle.
 pub fn draw_clip(moc: &mut MaskedOcclusionCulling, vertices: &[[f32; 4]]) -> CullingResult {
     let indices: Vec<u32> = (0..vertices.len() as u32).collect();
-    moc.render_triangles(Vertices::from_clip_space(vertices), &indices, &both_sides()).unwrap()
+    moc.render_triangles(Vertices::clip_space(vertices), &indices, &both_sides()).unwrap()
 }
 
 /// Tests both sides of clip-space vertices, three a triangle.
 pub fn test_clip(moc: &MaskedOcclusionCulling, vertices: &[[f32; 4]]) -> CullingResult {
     let indices: Vec<u32> = (0..vertices.len() as u32).collect();
-    moc.test_triangles(Vertices::from_clip_space(vertices), &indices, &both_sides()).unwrap()
+    moc.test_triangles(Vertices::clip_space(vertices), &indices, &both_sides()).unwrap()
 }
 
 /// One triangle, at w everywhere, that covers the whole screen.

@@ -30,10 +30,10 @@ fn main() -> Result<(), String> {
     let view = views(order).into_iter().find(|v| v.name == args.scene).ok_or("no such scene")?;
     let (implementation, update_rule) =
         (args.isa.map_or(Implementation::Avx512, Implementation::from), args.rule.into());
-    let mut moc = MaskedOcclusionCulling::new(Settings { implementation, update_rule, ..Settings::default() });
-    moc.set_resolution(WIDTH, HEIGHT).map_err(|e| e.to_string())?;
+    let settings = Settings::default().with_implementation(implementation).with_update_rule(update_rule);
+    let mut moc = MaskedOcclusionCulling::new(WIDTH, HEIGHT, settings).map_err(|e| e.to_string())?;
     for _ in 0..args.frames {
-        moc.clear_buffer().map_err(|e| e.to_string())?;
+        moc.clear_buffer();
         view.draw(&mut moc);
     }
     println!("{} triangles a frame, {:?}", view.triangles(), moc.implementation());

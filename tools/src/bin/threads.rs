@@ -11,7 +11,9 @@ use std::time::{Duration, Instant};
 use benches::{HEIGHT, Order, View, WIDTH, views};
 use clap::Parser;
 use demo::options::{Isa, Rule, isa};
-use masked_occlusion_culling::{CullingThreadpool, Implementation, MaskedOcclusionCulling, Settings};
+use masked_occlusion_culling::{
+    CullingThreadpool, Implementation, MaskedOcclusionCulling, Settings, ThreadpoolSettings,
+};
 
 /// Measures the pool of threads beside one thread, and beside threads that share nothing.
 #[derive(Parser)]
@@ -36,7 +38,7 @@ const AT_LEAST: Duration = Duration::from_millis(10);
 
 /// Draws a frame.
 fn frame(view: &View, moc: &mut MaskedOcclusionCulling) {
-    moc.clear_buffer().expect("there is a buffer");
+    moc.clear_buffer();
     view.draw(moc);
 }
 
@@ -95,7 +97,8 @@ fn measure(
     object: impl Fn() -> MaskedOcclusionCulling,
 ) -> (Vec<[f64; 2]>, usize) {
     let mut objects: Vec<MaskedOcclusionCulling> = (0..threads).map(|_| object()).collect();
-    let pool = CullingThreadpool::with_processors(threads - 1, 4, 4, 32, threads).expect("threads can be started");
+    let settings = ThreadpoolSettings::default().with_threads(threads - 1).with_processors(threads);
+    let pool = CullingThreadpool::new(settings).expect("threads can be started");
     let mut pooled = object();
     pooled.set_near_clip_plane(view.near).expect("a number");
     pool.set_buffer(pooled);
@@ -118,16 +121,10 @@ fn measure(
 
 fn main() -> Result<(), String> {
     let args = Args::parse();
-    let settings = Settings {
-        implementation: args.isa.map_or(Implementation::Avx512, Implementation::from),
-        update_rule: args.rule.into(),
-        ..Settings::default()
-    };
-    let object = || {
-        let mut moc = MaskedOcclusionCulling::new(settings);
-        moc.set_resolution(WIDTH, HEIGHT).expect("the size is accepted");
-        moc
-    };
+    let settings = Settings::default()
+        .with_implementation(args.isa.map_or(Implementation::Avx512, Implementation::from))
+        .with_update_rule(args.rule.into());
+    let object = || MaskedOcclusionCulling::new(WIDTH, HEIGHT, settings).expect("the size is accepted");
     let processors = thread::available_parallelism().map_or(1, |n| n.get() as u32);
     let counts = match args.threads.is_empty() {
         true => (1..11).map(|k| 1 << k).filter(|&n| n <= processors.max(2)).collect(),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use masked_occlusion_culling::{
-    CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
+    CullingResult, DrawOptions, Error, MaskedOcclusionCulling, Matrix, Settings, UpdateRule, Vertices,
 };
 
 use super::landscape::{Landscape, NEAR};
@@ -51,27 +51,26 @@ pub fn measure(
     repeats: u32,
 ) -> Result<Measured, Error> {
     let buffer = || -> Result<_, Error> {
-        let mut moc = MaskedOcclusionCulling::new(Settings { update_rule, ..Settings::default() });
+        let settings = Settings::default().with_update_rule(update_rule);
+        let mut moc = MaskedOcclusionCulling::new(width, height, settings)?;
         moc.set_near_clip_plane(NEAR)?;
-        moc.set_resolution(width, height)?;
         Ok(moc)
     };
     let (mut one, mut merged, mut other) = (buffer()?, buffer()?, buffer()?);
     let (terrain, foreground) = (Drawn::all(&landscape.terrain), Drawn::all(&landscape.foreground));
     let pick = |&(is_terrain, i): &(bool, usize)| if is_terrain { &terrain[i] } else { &foreground[i] };
     let interleaved: Vec<&Drawn> = landscape.interleaved.iter().map(pick).collect();
-    let options = DrawOptions::with_matrix(landscape.clip_from_world);
-    let options = &options;
+    let matrix = Matrix::from(landscape.clip_from_world);
 
     let mut times = [const { Vec::new() }; 5];
     // The first turn touches memory that the system has not given yet: it is not counted.
     for turn in 0..=repeats {
-        let all = draw(&mut one, interleaved.iter().copied(), options)?;
+        let all = draw(&mut one, interleaved.iter().copied(), matrix)?;
 
         let start = Instant::now();
         let (far, near) = std::thread::scope(|scope| {
-            let far = scope.spawn(|| draw(&mut other, terrain.iter(), options));
-            let near = scope.spawn(|| draw(&mut merged, foreground.iter(), options));
+            let far = scope.spawn(|| draw(&mut other, terrain.iter(), matrix));
+            let near = scope.spawn(|| draw(&mut merged, foreground.iter(), matrix));
             (far.join().expect("drawing does not panic"), near.join().expect("drawing does not panic"))
         });
         let both = start.elapsed();
@@ -90,7 +89,7 @@ pub fn measure(
     for (i, &[x_min, y_min, x_max, y_max, w]) in landscape.boxes.iter().enumerate() {
         let mut by_either = false;
         for (moc, culled) in [&one, &merged].into_iter().zip(&mut culled) {
-            let is_culled = moc.test_rect(x_min, y_min, x_max, y_max, w)? == CullingResult::Occluded;
+            let is_culled = moc.test_rect(x_min, y_min, x_max, y_max, w) == CullingResult::Occluded;
             *culled += usize::from(is_culled && truth.is_hidden[i]);
             by_either |= is_culled;
         }
@@ -104,12 +103,13 @@ pub fn measure(
 fn draw<'d>(
     moc: &mut MaskedOcclusionCulling,
     objects: impl Iterator<Item = &'d Drawn>,
-    options: &DrawOptions,
+    matrix: Matrix,
 ) -> Result<Duration, Error> {
     let start = Instant::now();
-    moc.clear_buffer()?;
+    moc.clear_buffer();
     for object in objects {
-        moc.render_triangles(Vertices::from_positions(&object.positions), &object.triangles, options)?;
+        let vertices = Vertices::model_space(&object.positions, matrix);
+        moc.render_triangles(vertices, &object.triangles, &DrawOptions::default())?;
     }
     Ok(start.elapsed())
 }

@@ -1,7 +1,6 @@
 //! This library, through its C functions: they are what the C++ class calls, so that both libraries trust their
 //! indices. The Rust interface checks each one first.
 
-use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use glam::Mat4;
@@ -23,14 +22,16 @@ pub struct Ours {
 
 impl Ours {
     pub fn new(rule: Rule, isa: i32) -> Result<Self> {
-        let mut settings = MaybeUninit::<MOC_Settings>::uninit();
-        // SAFETY: there is memory to write them to, and afterwards they are written.
-        let mut settings = unsafe {
-            MOC_DefaultSettings(settings.as_mut_ptr());
-            settings.assume_init()
+        let settings = MOC_Settings {
+            size: size_of::<MOC_Settings>() as u32,
+            implementation: isa,
+            update_rule: rule as i32,
+            y_axis: 0,
+            statistics: 0,
+            alloc: None,
+            free: None,
+            call_alloc: None,
         };
-        settings.implementation = isa;
-        settings.update_rule = rule as i32;
         let mut moc = null_mut();
         // SAFETY: both are there to be read and written, and there are no callbacks.
         match unsafe { MOC_Create(&settings, &mut moc) } {

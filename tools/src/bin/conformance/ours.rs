@@ -18,8 +18,8 @@ pub struct Ours {
 
 impl Ours {
     pub fn new(view: View, axis: YAxis) -> Result<Self, Error> {
-        let mut moc = MaskedOcclusionCulling::new(Settings { y_axis: axis, ..Settings::default() });
-        moc.set_resolution(view.width as u32, view.height as u32)?;
+        let settings = Settings::default().with_y_axis(axis);
+        let moc = MaskedOcclusionCulling::new(view.width as u32, view.height as u32, settings)?;
         Ok(Self { moc, view, depth: vec![0.0; view.pixels()], planes: vec![0; WORDS * view.pixels()] })
     }
 
@@ -33,9 +33,9 @@ impl Ours {
     fn draw_one(&mut self, number: usize, t: &Triangle) -> Result<u64, Error> {
         let axis = self.moc.y_axis();
         let vertices = t.map(|v| self.view.our_vertex(&v, axis));
-        let options = DrawOptions { winding: BackfaceWinding::None, ..DrawOptions::default() };
-        self.moc.clear_buffer()?;
-        self.moc.render_triangles(Vertices::from_clip_space(&vertices), &[0, 1, 2], &options)?;
+        let options = DrawOptions::default().with_winding(BackfaceWinding::None);
+        self.moc.clear_buffer();
+        self.moc.render_triangles(Vertices::clip_space(&vertices), &[0, 1, 2], &options)?;
         self.moc.compute_pixel_depth_buffer(&mut self.depth, false)?;
         let pixels = self.view.pixels();
         let mut covered = 0;

@@ -61,10 +61,10 @@ impl Family {
             let (alloc, free): (MOC_AlignedAlloc, MOC_AlignedFree) =
                 if own_allocator { (Some(memory::alloc), Some(memory::free)) } else { (None, None) };
             let settings = MOC_Settings {
+                size: size_of::<MOC_Settings>() as u32,
                 implementation,
                 update_rule,
                 y_axis,
-                precise_coverage: 1,
                 statistics: statistics.into(),
                 alloc,
                 free,

@@ -17,16 +17,16 @@ impl Driver<'_> {
         self.settle(which)?;
         let family = &self.families[which];
         family.all("GetStatistics", |_, moc| {
-            let (mut counts, mut dropped) = ([0i64; 9], 0);
+            let (mut counts, mut dropped) = ([size_of::<MOC_Statistics>() as i64; 10], 0);
             assert_eq!(size_of::<MOC_Statistics>(), size_of_val(&counts));
-            // SAFETY: a live object; the struct is nine 64-bit integers.
+            // SAFETY: a live object; the struct is its size in 64 bits and nine 64-bit integers.
             let status = unsafe { MOC_GetStatistics(moc, counts.as_mut_ptr().cast()) } as i32;
             // SAFETY: a live object and a valid output pointer.
             let status = status.max(unsafe { MOC_GetDroppedTriangles(moc, &mut dropped) } as i32);
             let status = if counts.iter().any(|c| *c < 0) || dropped < 0 { -1 } else { status };
             if family.asked_early {
                 // Triangles and tiles that queries looked at.
-                counts[7..].fill(0);
+                counts[8..].fill(0);
             }
             (status, (counts, dropped))
         })?;
@@ -69,10 +69,10 @@ impl Driver<'_> {
     pub(crate) fn settings(&mut self) -> Check {
         let rng = &mut self.rng;
         let mut settings = MOC_Settings {
+            size: size_of::<MOC_Settings>() as u32,
             implementation: hostile::enumeration(rng, &[-1, 0, 1, 2, 3, 16, 4, -2]),
             update_rule: hostile::enumeration(rng, &[0, 1, 2, 3, 4, -1]),
             y_axis: hostile::enumeration(rng, &[0, 1, 2]),
-            precise_coverage: hostile::enumeration(rng, &[0, 1, 2]),
             statistics: hostile::enumeration(rng, &[0, 1, 2]),
             alloc: Some(memory::alloc),
             free: Some(memory::free),
@@ -86,7 +86,6 @@ impl Driver<'_> {
         let enums = [-1, 0, 1, 2, 3, 16].contains(&settings.implementation)
             && (0..=3).contains(&settings.update_rule)
             && (0..=1).contains(&settings.y_axis)
-            && (0..=1).contains(&settings.precise_coverage)
             && (0..=1).contains(&settings.statistics);
         let pair = settings.alloc.is_some() == settings.free.is_some();
         let mode = [Mode::Works, Mode::Fails][rng.usize(..2)];

@@ -160,10 +160,9 @@ impl Driver<'_> {
                 MOC_ThreadpoolGetThreads(null(), &mut w),
                 MOC_ThreadpoolGetBins(null(), &mut w, &mut h),
                 MOC_ThreadpoolGetBins(pool, &mut w, null_mut()),
-                MOC_ThreadpoolRenderMesh(null(), null(), null(), 0, null(), 1, 0x1f, null()),
-                MOC_ThreadpoolRenderMeshChecked(null(), null(), 0, null(), 0, null(), 1, 0x1f, null()),
-                MOC_ThreadpoolTestMesh(null(), null(), null(), 0, null(), 1, 0x1f, null(), &mut answer),
-                MOC_ThreadpoolTestMeshChecked(null(), null(), 0, null(), 0, null(), 1, 0x1f, null(), &mut answer),
+                MOC_ThreadpoolRenderMesh(null(), &EMPTY),
+                MOC_ThreadpoolTestMesh(null(), &EMPTY, &mut answer),
+                MOC_ThreadpoolTestMesh(null(), null(), &mut answer),
                 MOC_ThreadpoolCreate(1, 1, 1, 1, 0, null_mut()),
                 MOC_ThreadpoolWakeThreads(null()),
                 MOC_ThreadpoolSuspendThreads(null()),
@@ -216,6 +215,35 @@ impl Family {
     }
 }
 
+/// No triangles.
+pub const EMPTY: MOC_Mesh = MOC_Mesh {
+    size: size_of::<MOC_Mesh>() as u32,
+    index_size: 0,
+    vertices: null(),
+    indices: null(),
+    vertex_count: 0,
+    triangle_count: 0,
+    model_to_clip: null(),
+    layout: null(),
+    winding: 1,
+    clip_planes: 0x1f,
+};
+
+/// The mesh as a struct; null for the layout means the same as in the other functions.
+fn described(m: &Mesh) -> MOC_Mesh {
+    MOC_Mesh {
+        vertices: m.vertices,
+        indices: m.triangles.cast(),
+        vertex_count: MOC_UNCHECKED,
+        triangle_count: m.n_triangles as u32,
+        model_to_clip: m.matrix,
+        layout: if m.layout.is_null() { &PACKED } else { m.layout },
+        winding: m.winding,
+        clip_planes: m.clip_planes,
+        ..EMPTY
+    }
+}
+
 /// Draws a mesh, with the matrix and layout set on the pool or passed with the call, which are the same. There is no result.
 pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);
@@ -224,7 +252,7 @@ pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
         if n % 2 == 0 {
             MOC_ThreadpoolRenderTriangles(pool, m.vertices, m.triangles, n, winding, planes)
         } else {
-            MOC_ThreadpoolRenderMesh(pool, m.vertices, m.triangles, n, m.matrix, winding, planes, m.layout)
+            MOC_ThreadpoolRenderMesh(pool, &described(m))
         }
     };
     (status as i32, UNTOUCHED)
@@ -239,7 +267,7 @@ pub fn test(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
         if n % 2 == 0 {
             MOC_ThreadpoolTestTriangles(pool, m.vertices, m.triangles, n, winding, planes, &mut answer)
         } else {
-            MOC_ThreadpoolTestMesh(pool, m.vertices, m.triangles, n, m.matrix, winding, planes, m.layout, &mut answer)
+            MOC_ThreadpoolTestMesh(pool, &described(m), &mut answer)
         }
     };
     (status as i32, answer)

@@ -8,7 +8,7 @@ use masked_occlusion_culling::capi::*;
 use crate::calls::Driver;
 use crate::family::{Check, NO_BUFFER, OK, UNTOUCHED, ensure};
 use crate::hostile;
-use crate::pool::Pool;
+use crate::pool::{EMPTY, Pool};
 
 impl Driver<'_> {
     /// Some tens of calls through a pool.
@@ -137,8 +137,8 @@ impl Driver<'_> {
                 MOC_ThreadpoolSetResolution(handle, 8, 8),
                 MOC_ThreadpoolSetNearClipPlane(handle, 1.0),
                 MOC_ThreadpoolClearBuffer(handle),
-                MOC_ThreadpoolRenderMesh(handle, null(), null(), 0, null(), 1, 0x1f, null()),
-                MOC_ThreadpoolTestMesh(handle, null(), null(), 0, null(), 1, 0x1f, null(), &mut answer),
+                MOC_ThreadpoolRenderMesh(handle, &EMPTY),
+                MOC_ThreadpoolTestMesh(handle, &EMPTY, &mut answer),
                 MOC_ThreadpoolRenderTriangles(handle, null(), null(), 0, 1, 0x1f),
                 MOC_ThreadpoolTestRect(handle, 0.0, 0.0, 1.0, 1.0, 1.0, &mut answer),
                 MOC_ThreadpoolTestTriangles(handle, null(), null(), 0, 1, 0x1f, &mut answer),

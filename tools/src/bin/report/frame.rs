@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use masked_occlusion_culling::{
-    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings,
-    VertexLayout, Vertices,
+    BackfaceWinding, CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Matrix,
+    ModelSpaceLayout, Settings, ThreadpoolSettings, Vertices,
 };
 
 use crate::setting::{Order, Setting};
@@ -17,6 +17,7 @@ use tools::Result;
 pub struct Occluder {
     vertices: Vec<[f32; 4]>,
     pub indices: Vec<u32>,
+    matrix: Matrix,
     options: DrawOptions,
     /// The least w of its box, and the greatest.
     nearest: f32,
@@ -24,7 +25,7 @@ pub struct Occluder {
 }
 
 /// Of [`Occluder::vertices`].
-pub const LAYOUT: VertexLayout = VertexLayout::new(16, 4, 8);
+pub const LAYOUT: ModelSpaceLayout = ModelSpaceLayout::XYZ_PADDED;
 
 impl Occluder {
     fn new(object: &Object, view: &View) -> Self {
@@ -33,7 +34,8 @@ impl Occluder {
         Self {
             vertices: object.mesh.positions.iter().map(|p| p.extend(1.0).to_array()).collect(),
             indices: object.mesh.triangles.as_flattened().to_vec(),
-            options: DrawOptions { winding, ..DrawOptions::with_matrix(view.clip) },
+            matrix: view.clip.into(),
+            options: DrawOptions::default().with_winding(winding),
             nearest: w.into_iter().fold(f32::INFINITY, f32::min).max(view.near),
             farthest: w.into_iter().fold(view.near, f32::max),
         }
@@ -48,7 +50,7 @@ impl Occluder {
     }
 
     fn source(&self) -> Result<Vertices<'_>, Error> {
-        Vertices::new(self.vertices.as_flattened(), LAYOUT)
+        Vertices::new(self.vertices.as_flattened(), LAYOUT.with_matrix(self.matrix))
     }
 
     pub fn draw(&self, moc: &mut MaskedOcclusionCulling) -> Result<(), Error> {
@@ -97,16 +99,16 @@ pub struct Frames<'a> {
 impl<'a> Frames<'a> {
     pub fn new(setting: &Setting, occluders: &'a [Occluder], near: f32) -> Result<Self> {
         let settings =
-            Settings { implementation: setting.isa.into(), update_rule: setting.rule.into(), ..Settings::default() };
+            Settings::default().with_implementation(setting.isa.into()).with_update_rule(setting.rule.into());
         let buffer = |_| -> Result<_> {
-            let mut moc = MaskedOcclusionCulling::new(settings);
+            let mut moc = MaskedOcclusionCulling::new(setting.size.0, setting.size.1, settings)?;
             moc.set_near_clip_plane(near)?;
-            moc.set_resolution(setting.size.0, setting.size.1)?;
             Ok(moc)
         };
         let pool = (setting.threads > 1 && setting.buffers == 1).then(|| -> Result<_> {
             // Who flushes draws, too.
-            let pool = CullingThreadpool::new(setting.threads - 1, 4, 16, 64)?;
+            let settings = ThreadpoolSettings::default().with_threads(setting.threads - 1);
+            let pool = CullingThreadpool::new(settings.with_bins(4, 16).with_max_jobs(64))?;
             pool.wake_threads();
             Ok(pool)
         });
@@ -161,7 +163,7 @@ impl<'a> Frames<'a> {
         let start = Instant::now();
         for rectangle in rectangles {
             hidden.push(match rectangle {
-                Some(rectangle) => is_hidden(moc, *rectangle)?,
+                Some(rectangle) => is_hidden(moc, *rectangle),
                 None => false,
             });
         }
@@ -175,11 +177,11 @@ impl<'a> Frames<'a> {
 }
 
 fn draw_list(moc: &mut MaskedOcclusionCulling, list: &[&Occluder]) -> Result<(), Error> {
-    moc.clear_buffer()?;
+    moc.clear_buffer();
     list.iter().try_for_each(|o| o.draw(moc))
 }
 
 /// Is a rectangle at w hidden, and not only out of view?
-pub fn is_hidden(moc: &MaskedOcclusionCulling, [x_min, y_min, x_max, y_max, w]: [f32; 5]) -> Result<bool, Error> {
-    Ok(moc.test_rect(x_min, y_min, x_max, y_max, w)? == CullingResult::Occluded)
+pub fn is_hidden(moc: &MaskedOcclusionCulling, [x_min, y_min, x_max, y_max, w]: [f32; 5]) -> bool {
+    moc.test_rect(x_min, y_min, x_max, y_max, w) == CullingResult::Occluded
 }

@@ -70,9 +70,9 @@ pub fn study(subject: &Subject, repeats: u32) -> Result<Vec<Row>> {
 }
 
 fn masked(rule: Rule, view: &View) -> Result<Kind> {
-    let mut moc = MaskedOcclusionCulling::new(Settings { update_rule: rule.into(), ..Settings::default() });
+    let settings = Settings::default().with_update_rule(rule.into());
+    let mut moc = MaskedOcclusionCulling::new(SCREEN.0, SCREEN.1, settings)?;
     moc.set_near_clip_plane(view.near)?;
-    moc.set_resolution(SCREEN.0, SCREEN.1)?;
     Ok(Kind::Masked(Box::new(moc)))
 }
 
@@ -130,16 +130,15 @@ impl Way {
                 t[4] = laps.lap();
             }
             Kind::Masked(moc) => {
-                moc.clear_buffer()?;
+                moc.clear_buffer();
                 t[0] = laps.lap();
                 let mut lists = [TriList::new(&mut self.list)];
                 for (o, clip) in occluders.iter().zip(&mut self.clip) {
-                    let source = Vertices::new(o.vertices().as_flattened(), LAYOUT)?;
                     laps.lap();
-                    transform_vertices(&view.clip, source, clip);
+                    transform_vertices(view.clip, o.vertices().as_flattened(), LAYOUT, clip)?;
                     t[1] += laps.lap();
-                    let options = DrawOptions { winding: o.winding(), ..DrawOptions::default() };
-                    moc.bin_triangles(Vertices::from_clip_space(clip), &o.indices, &mut lists, 1, 1, &options)?;
+                    let options = DrawOptions::default().with_winding(o.winding());
+                    moc.bin_triangles(Vertices::clip_space(clip), &o.indices, &mut lists, 1, 1, &options)?;
                     t[2] += laps.lap();
                 }
                 laps.lap();
@@ -163,7 +162,7 @@ impl Way {
                 hiz.generate();
             }
             Kind::Masked(moc) => {
-                moc.clear_buffer()?;
+                moc.clear_buffer();
                 occluders.iter().try_for_each(|o| o.draw(moc))?;
             }
         }
@@ -176,7 +175,7 @@ impl Way {
         for &[x_min, y_min, x_max, y_max, w] in tested.iter().flatten() {
             culled += usize::from(match &self.kind {
                 Kind::Hiz(hiz) => hiz.test_rect(x_min, y_min, x_max, y_max, w),
-                Kind::Masked(moc) => crate::frame::is_hidden(moc, [x_min, y_min, x_max, y_max, w])?,
+                Kind::Masked(moc) => crate::frame::is_hidden(moc, [x_min, y_min, x_max, y_max, w]),
             });
         }
         Ok(culled)
