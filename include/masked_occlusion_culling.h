@@ -32,7 +32,7 @@
  *         return 0;
  *     }
  *
- * Order of calls. Once: MOC_DefaultSettings, MOC_Create, MOC_SetResolution, MOC_SetNearClipPlane. Each frame:
+ * Order of calls. Once: MOC_DefaultSettings if the defaults do not suit, MOC_Create, MOC_SetResolution, MOC_SetNearClipPlane. Each frame:
  * MOC_ClearBuffer, then draws and tests, in any order and as often as wanted. A test answers from what is drawn
  * by then, so draw first what is near and large. At the end: MOC_ThreadpoolDestroy and MOC_Destroy.
  *
@@ -45,8 +45,8 @@
  *   pixels       columns from the left, rows from the top, or from the bottom with MOC_Y_AXIS_UP. A draw covers the
  *                pixels whose centres are inside, on vertices rounded to 1/256 pixel, by the top-left rule; a test
  *                covers every pixel that is touched.
- *   counts       `n_triangles` counts triangles, `vertex_floats` and `out_floats` floats; strides and offsets are
- *                bytes.
+ *   counts       `n_triangles` and `triangle_count` count triangles, `vertex_count` vertices, `vertex_floats` and
+ *                `out_floats` floats; strides and offsets are bytes.
  *
  * Ranges
  *   buffers      1 to 16384 pixels wide and high.
@@ -64,8 +64,15 @@
  * Null. A pointer may be null where the function says so. Where it may not, null is refused with
  * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
  * "Required" of a function says what has to hold, and without it the behaviour is undefined. Where it says "null or",
- * null does no harm; whether it is refused is said above it. Indices are trusted, too; functions whose names end in
- * Checked take the length of the array, and look at every one.
+ * null does no harm; whether it is refused is said above it. Indices are trusted, too, unless a MOC_Mesh gives the number of
+ * vertices; functions whose names end in Checked take the length of the array, and look at every one.
+ *
+ * Structs that may grow begin with their `size`, which the caller sets: MOC_Settings settings = {.size = sizeof settings}. A
+ * program that was compiled with an older header passes a smaller size, and nothing beyond it is read or written. A size smaller
+ * than that of the first version is refused with MOC_STATUS_INVALID_SIZE.
+ *
+ * Meshes. MOC_RenderMesh, MOC_TestMesh, MOC_BinMesh, MOC_RecordMesh and those of the pool take a MOC_Mesh. MOC_RenderTriangles,
+ * MOC_TestTriangles, MOC_BinTriangles and MOC_RecordRenderTriangles take the same one by one, as the methods of the class do.
  *
  * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
  * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
@@ -131,7 +138,12 @@ typedef struct MaskedOcclusionCulling MaskedOcclusionCulling;
  * 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
  * header's.
  */
-#define MOC_ABI_VERSION 1
+#define MOC_ABI_VERSION 2
+
+/**
+ * As the `vertex_count` of a MOC_Mesh: the number is not known, and the indices are trusted.
+ */
+#define MOC_UNCHECKED 4294967295
 
 /**
  * No answer is known, in recordings.
@@ -194,7 +206,7 @@ enum MOC_Status
      */
     MOC_STATUS_OUT_OF_MEMORY = 10,
     /**
-     * The library failed inside. No memory was harmed, but the call did not finish.
+     * The library failed inside. Memory is intact, but the call did not finish.
      */
     MOC_STATUS_INTERNAL = 11,
     /**
@@ -442,7 +454,7 @@ enum MOC_RecordedCallKind
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * MOC_RenderTriangles.
+     * MOC_RenderTriangles or MOC_RenderMesh.
      */
     MOC_RECORDED_RENDER_TRIANGLES = 0,
     /**
@@ -450,7 +462,7 @@ enum MOC_RecordedCallKind
      */
     MOC_RECORDED_TEST_RECT = 1,
     /**
-     * MOC_TestTriangles.
+     * MOC_TestTriangles or MOC_TestMesh.
      */
     MOC_RECORDED_TEST_TRIANGLES = 2,
     /**
@@ -506,9 +518,13 @@ typedef void (*MOC_AlignedFree)(void *ptr);
 typedef void *(*MOC_CallAlloc)(MOC_AlignedAlloc alloc, size_t alignment, size_t size);
 
 /**
- * What an object is made with. Fill it with MOC_DefaultSettings first, then change what matters.
+ * What an object is made with. Set `size`, let MOC_DefaultSettings fill in the rest, then change what matters.
  */
 typedef struct MOC_Settings {
+    /**
+     * sizeof(MOC_Settings).
+     */
+    uint32_t size;
     /**
      * A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. On another
      * architecture than the named one, anything but MOC_SCALAR permits the best that there is.
@@ -522,10 +538,6 @@ typedef struct MOC_Settings {
      * A MOC_YAxis. Default MOC_Y_AXIS_DOWN.
      */
     int32_t y_axis;
-    /**
-     * 0 or 1. Accepted for the sake of programs that set it: coverage is always exact. Default 1.
-     */
-    int32_t precise_coverage;
     /**
      * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
      * MOC_GetDroppedTriangles counts. Default 0.
@@ -569,6 +581,57 @@ typedef struct MOC_VertexLayout {
      */
     int32_t offset_zw;
 } MOC_VertexLayout;
+
+/**
+ * Triangles to be drawn, tested, binned or recorded. Zero the struct, then set `size` and what the mesh has.
+ *
+ * Every vertex below `vertex_count` has to be readable: its x, y and w (or z), and all between in vertices of 12 or 16 bytes
+ * with y at 4 and w (or z) at 8 or 12. With MOC_UNCHECKED that holds for every vertex from the lowest to the highest index,
+ * whether or not an index names it.
+ */
+typedef struct MOC_Mesh {
+    /**
+     * sizeof(MOC_Mesh).
+     */
+    uint32_t size;
+    /**
+     * Bytes of an index: 4, or 0, which means 4.
+     */
+    uint32_t index_size;
+    /**
+     * The x of the first vertex, at any address. Null is allowed when there are no triangles.
+     */
+    const float *vertices;
+    /**
+     * The indices, `uint32_t`, three per triangle. Null is allowed when there are no triangles.
+     */
+    const void *indices;
+    /**
+     * How many vertices there are: an index that is not below is refused. MOC_UNCHECKED: indices are trusted.
+     */
+    uint32_t vertex_count;
+    /**
+     * How many triangles, 0 to INT32_MAX.
+     */
+    uint32_t triangle_count;
+    /**
+     * 16 floats, as in MOC_RenderTriangles. Null: the vertices are in clip space.
+     */
+    const float *model_to_clip;
+    /**
+     * Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. With a matrix the last
+     * offset names z, without one w. Offsets may be negative.
+     */
+    const struct MOC_VertexLayout *layout;
+    /**
+     * A MOC_BackfaceWinding, of the triangle as it is seen on the screen. Zero is MOC_BACKFACE_NONE: both sides count.
+     */
+    int32_t winding;
+    /**
+     * MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right; zero is MOC_CLIP_PLANE_NONE.
+     */
+    int32_t clip_planes;
+} MOC_Mesh;
 
 /**
  * A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it,
@@ -662,10 +725,18 @@ typedef struct MOC_OccludeeStatistics {
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. The 72
- * bytes are those of Intel's struct, and will stay so; other counts have their own functions, such as MOC_GetDroppedTriangles.
+ * All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. Triangles
+ * that are dropped are counted in either case, for MOC_GetDroppedTriangles.
  */
 typedef struct MOC_Statistics {
+    /**
+     * sizeof(MOC_Statistics).
+     */
+    uint32_t size;
+    /**
+     * 0.
+     */
+    uint32_t reserved;
     /**
      * Of draws.
      */
@@ -740,6 +811,10 @@ typedef struct MOC_ThreadpoolSettings {
  */
 typedef struct MOC_RecordingInfo {
     /**
+     * sizeof(MOC_RecordingInfo).
+     */
+    uint32_t size;
+    /**
      * The near plane, in clip-space w.
      */
     float near_clip_plane;
@@ -758,9 +833,13 @@ typedef struct MOC_RecordingInfo {
 } MOC_RecordingInfo;
 
 /**
- * A recorded call. What its kind does not have is zero. The pointers stay right until the recording is destroyed.
+ * A recorded call.
  */
 typedef struct MOC_RecordedCall {
+    /**
+     * sizeof(MOC_RecordedCall).
+     */
+    uint32_t size;
     /**
      * A MOC_RecordedCallKind.
      */
@@ -770,41 +849,18 @@ typedef struct MOC_RecordedCall {
      */
     int32_t result;
     /**
-     * Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min.
+     * Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Zeros otherwise.
      */
     float rect[5];
     /**
-     * Of meshes: the arguments of the call, and the length of the vertices in floats. The matrix is null where there is none.
+     * Of draws and tests of triangles: their mesh, which MOC_RenderMesh and MOC_TestMesh take. Null otherwise. It stays right
+     * until the recording is destroyed.
      */
-    const float *vertices;
+    const struct MOC_Mesh *mesh;
     /**
-     * As above.
+     * How many floats there are from `mesh->vertices` on.
      */
     size_t vertex_floats;
-    /**
-     * As above.
-     */
-    const uint32_t *triangles;
-    /**
-     * As above.
-     */
-    int32_t n_triangles;
-    /**
-     * As above.
-     */
-    const float *model_to_clip;
-    /**
-     * As above.
-     */
-    int32_t winding;
-    /**
-     * As above.
-     */
-    int32_t clip_planes;
-    /**
-     * As above.
-     */
-    struct MOC_VertexLayout layout;
 } MOC_RecordedCall;
 
 #ifdef __cplusplus
@@ -843,12 +899,13 @@ MOC_Status MOC_SetMessageCallback(MOC_MessageCallback callback,
 int32_t MOC_GetLastStatus(void);
 
 /**
- * Writes the default settings to `out`: those that MOC_Create takes for null.
+ * Writes the default settings to `out`: those that MOC_Create takes for null. `out->size` is sizeof(MOC_Settings), set by the
+ * caller, and stays.
  *
- * Errors: MOC_STATUS_NULL_POINTER.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
  * Required:
- * `out` is null or can be written.
+ * `out` is null, or can be read and written for the number of bytes given in its `size`.
  */
 MOC_Status MOC_DefaultSettings(struct MOC_Settings *out);
 
@@ -857,11 +914,11 @@ MOC_Status MOC_DefaultSettings(struct MOC_Settings *out);
  * allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
  * caller gives the object back to MOC_Destroy.
  *
- * Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_ENUM,
- * MOC_STATUS_OUT_OF_MEMORY.
+ * Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_SIZE for a `size` that is too
+ * small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
  *
  * Required:
- * `settings` is null or can be read, `out` is null or can be written. The callbacks do what
+ * `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The callbacks do what
  * MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
  */
 MOC_Status MOC_Create(const struct MOC_Settings *settings,
@@ -1094,6 +1151,20 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
                                       int32_t *result);
 
 /**
+ * MOC_RenderTriangles or MOC_RenderTrianglesChecked of a mesh that a struct describes.
+ *
+ * Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or a
+ * `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+ *
+ * Required:
+ * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for the
+ * number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+ */
+MOC_Status MOC_RenderMesh(MaskedOcclusionCulling *moc,
+                          const struct MOC_Mesh *mesh,
+                          int32_t *result);
+
+/**
  * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
  * use to objects of the resolution and MOC_YAxis of the one that filled it.
  *
@@ -1167,6 +1238,16 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
                                     int32_t *result);
 
 /**
+ * MOC_TestTriangles or MOC_TestTrianglesChecked of a mesh that a struct describes.
+ *
+ * Errors: as MOC_RenderMesh, except MOC_STATUS_BUSY.
+ *
+ * Required:
+ * As MOC_RenderMesh, but other threads may query `moc` meanwhile.
+ */
+MOC_Status MOC_TestMesh(const MaskedOcclusionCulling *moc, const struct MOC_Mesh *mesh, int32_t *result);
+
+/**
  * Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
  * a box.
  *
@@ -1225,13 +1306,14 @@ MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
                                               int32_t flip_y);
 
 /**
- * Writes what was counted since the object was made; nothing sets the counts back.
+ * Writes what was counted since the object was made; nothing sets the counts back. `out->size` is sizeof(MOC_Statistics), set by
+ * the caller.
  *
- * Errors: MOC_STATUS_NULL_POINTER.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
- * written.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or can be read
+ * and written for the number of bytes given in its `size`.
  */
 MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
                              struct MOC_Statistics *out);
@@ -1243,7 +1325,8 @@ MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
  * Errors: MOC_STATUS_NULL_POINTER.
  *
  * Required:
- * As MOC_GetStatistics.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
+ * written.
  */
 MOC_Status MOC_GetDroppedTriangles(const MaskedOcclusionCulling *moc,
                                    int64_t *out);
@@ -1302,6 +1385,22 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
                                    int32_t clip_planes,
                                    const struct MOC_VertexLayout *layout,
                                    int32_t *result);
+
+/**
+ * MOC_BinTriangles or MOC_BinTrianglesChecked of a mesh that a struct describes.
+ *
+ * Errors: as there and as MOC_RenderMesh.
+ *
+ * Required:
+ * As MOC_TestMesh. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data` of each for
+ * 9 * `capacity` floats; nobody else uses them meanwhile.
+ */
+MOC_Status MOC_BinMesh(const MaskedOcclusionCulling *moc,
+                       const struct MOC_Mesh *mesh,
+                       struct MOC_TriList *lists,
+                       uint32_t bins_w,
+                       uint32_t bins_h,
+                       int32_t *result);
 
 /**
  * Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
@@ -1498,7 +1597,7 @@ MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, flo
 /**
  * Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
  * vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
- * so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both as arguments.
+ * so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both with the mesh.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool.
  *
@@ -1532,12 +1631,14 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
 
 /**
- * MOC_ThreadpoolRenderMesh with the matrix and the vertex layout that the calling thread has set.
+ * MOC_RenderTriangles with the matrix and the vertex layout that the calling thread has set, as MOC_ThreadpoolRenderMesh: it
+ * returns at once.
  *
- * Errors: as there.
+ * Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
  *
  * Required:
- * As MOC_ThreadpoolRenderMesh.
+ * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
+ * unchanged as those of MOC_ThreadpoolRenderMesh.
  */
 MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          const float *vertices,
@@ -1548,80 +1649,29 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
 
 /**
  * Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
- * no longer holds. The arguments are those of MOC_RenderTriangles; matrix and layout are copied. The near plane is the
- * object's.
+ * no longer holds. The struct, its matrix and its layout are copied. The near plane is the object's.
  *
- * Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
+ * Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
- * unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs`
- * later calls do. `model_to_clip` and `layout` are null or can be read.
+ * As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what it points to
+ * as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or
+ * MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
  */
 MOC_Status MOC_ThreadpoolRenderMesh(const struct MOC_Threadpool *pool,
-                                    const float *vertices,
-                                    const uint32_t *triangles,
-                                    int32_t n_triangles,
-                                    const float *model_to_clip,
-                                    int32_t winding,
-                                    int32_t clip_planes,
-                                    const struct MOC_VertexLayout *layout);
+                                    const struct MOC_Mesh *mesh);
 
 /**
- * As MOC_ThreadpoolRenderMesh, with the length of the vertex array, counted in floats from `vertices`: an index of a vertex
- * that is not wholly within it is an error, and nothing is drawn.
- *
- * Errors: as MOC_RenderTrianglesChecked.
- *
- * Required:
- * As MOC_ThreadpoolRenderMesh, but `vertices` can be read for `vertex_floats` floats whatever the indices are.
- */
-MOC_Status MOC_ThreadpoolRenderMeshChecked(const struct MOC_Threadpool *pool,
-                                           const float *vertices,
-                                           size_t vertex_floats,
-                                           const uint32_t *triangles,
-                                           int32_t n_triangles,
-                                           const float *model_to_clip,
-                                           int32_t winding,
-                                           int32_t clip_planes,
-                                           const struct MOC_VertexLayout *layout);
-
-/**
- * MOC_TestTriangles against what has been drawn so far.
+ * MOC_TestMesh against what has been drawn so far.
  *
  * Errors: as there.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads and MOC_TestTriangles. `result` is null or can be written.
+ * As MOC_ThreadpoolWakeThreads and MOC_TestMesh.
  */
 MOC_Status MOC_ThreadpoolTestMesh(const struct MOC_Threadpool *pool,
-                                  const float *vertices,
-                                  const uint32_t *triangles,
-                                  int32_t n_triangles,
-                                  const float *model_to_clip,
-                                  int32_t winding,
-                                  int32_t clip_planes,
-                                  const struct MOC_VertexLayout *layout,
+                                  const struct MOC_Mesh *mesh,
                                   int32_t *result);
-
-/**
- * MOC_TestTrianglesChecked against what has been drawn so far.
- *
- * Errors: as there.
- *
- * Required:
- * As MOC_ThreadpoolWakeThreads and MOC_TestTrianglesChecked. `result` is null or can be written.
- */
-MOC_Status MOC_ThreadpoolTestMeshChecked(const struct MOC_Threadpool *pool,
-                                         const float *vertices,
-                                         size_t vertex_floats,
-                                         const uint32_t *triangles,
-                                         int32_t n_triangles,
-                                         const float *model_to_clip,
-                                         int32_t winding,
-                                         int32_t clip_planes,
-                                         const struct MOC_VertexLayout *layout,
-                                         int32_t *result);
 
 /**
  * MOC_TestRect against what has been drawn so far. Work that is submitted but not yet drawn hides nothing.
@@ -1640,7 +1690,7 @@ MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
                                   int32_t *result);
 
 /**
- * MOC_ThreadpoolTestMesh with the matrix and the vertex layout that the calling thread has set.
+ * MOC_TestTriangles with the matrix and the vertex layout that the calling thread has set, against what has been drawn so far.
  *
  * Errors: as there.
  *
@@ -1707,9 +1757,8 @@ MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
 MOC_Status MOC_RecorderStop(const MaskedOcclusionCulling *moc);
 
 /**
- * Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. Note the order of
- * `clip_planes` and `winding`, which is that of the class that engines know. `result`: a MOC_CullingResult, or
- * MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+ * Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. `result`: a MOC_CullingResult,
+ * or MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
  *
  * Errors: those of MOC_RenderTriangles; nothing is recorded.
  *
@@ -1721,10 +1770,20 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
                                      const uint32_t *triangles,
                                      int32_t n_triangles,
                                      const float *model_to_clip,
-                                     int32_t clip_planes,
                                      int32_t winding,
+                                     int32_t clip_planes,
                                      const struct MOC_VertexLayout *layout,
                                      int32_t result);
+
+/**
+ * MOC_RecordRenderTriangles of a mesh that a struct describes.
+ *
+ * Errors: those of MOC_RenderMesh; nothing is recorded.
+ *
+ * Required:
+ * That of MOC_RenderMesh; other threads may use `moc` as they may during a query.
+ */
+MOC_Status MOC_RecordMesh(const MaskedOcclusionCulling *moc, const struct MOC_Mesh *mesh, int32_t result);
 
 /**
  * Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
@@ -1758,23 +1817,25 @@ MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC
 MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
 
 /**
- * Writes to `out` what the recording begins with.
+ * Writes to `out` what the recording begins with. `out->size` is sizeof(MOC_RecordingInfo), set by the caller.
  *
- * Errors: MOC_STATUS_NULL_POINTER.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
  * Required:
- * `recording` is null or a live one, `out` is null or can be written.
+ * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
  */
-MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording, struct MOC_RecordingInfo *out);
+MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording,
+                                struct MOC_RecordingInfo *out);
 
 /**
- * Writes the call number `index` to `out`, counted from 0. What its pointers name belongs to the recording and lives as
- * long.
+ * Writes the call number `index` to `out`, counted from 0. `out->size` is sizeof(MOC_RecordedCall), set by the caller. What its
+ * pointers name belongs to the recording and lives as long.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too small; nothing
+ * is written.
  *
  * Required:
- * `recording` is null or a live one, `out` is null or can be written.
+ * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
  */
 MOC_Status MOC_RecordingGetCall(const struct MOC_Recording *recording,
                                 uint32_t index,

@@ -26,9 +26,11 @@
 #undef MOC_MergeBuffers
 #undef MOC_RenderTriangles
 #undef MOC_RenderTrianglesChecked
+#undef MOC_RenderMesh
 #undef MOC_RenderTrilist
 #undef MOC_TestTriangles
 #undef MOC_TestTrianglesChecked
+#undef MOC_TestMesh
 #undef MOC_TestRect
 #undef MOC_ComputePixelDepthBuffer
 #undef MOC_ComputePixelDepthBufferChecked
@@ -36,6 +38,7 @@
 #undef MOC_GetDroppedTriangles
 #undef MOC_BinTriangles
 #undef MOC_BinTrianglesChecked
+#undef MOC_BinMesh
 #undef MOC_TransformVertices
 #undef MOC_ThreadpoolCreate
 #undef MOC_ThreadpoolCreateFrom
@@ -55,9 +58,7 @@
 #undef MOC_ThreadpoolClearBuffer
 #undef MOC_ThreadpoolRenderTriangles
 #undef MOC_ThreadpoolRenderMesh
-#undef MOC_ThreadpoolRenderMeshChecked
 #undef MOC_ThreadpoolTestMesh
-#undef MOC_ThreadpoolTestMeshChecked
 #undef MOC_ThreadpoolTestRect
 #undef MOC_ThreadpoolTestTriangles
 #undef MOC_ThreadpoolComputePixelDepthBuffer
@@ -65,6 +66,7 @@
 #undef MOC_RecorderStart
 #undef MOC_RecorderStop
 #undef MOC_RecordRenderTriangles
+#undef MOC_RecordMesh
 #undef MOC_RecordingLoad
 #undef MOC_RecordingFromMemory
 #undef MOC_RecordingDestroy
