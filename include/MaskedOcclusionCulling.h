@@ -290,7 +290,8 @@ public:
 
     /**
      * Gives the object a cleared buffer, 1 to 16384 pixels wide and high. If the size is refused or there is no memory, it
-     * keeps its old buffer.
+     * keeps its old buffer. In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can
+     * close, and hide what the screen shows through it (docs/guide.md).
      */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {

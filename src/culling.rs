@@ -118,6 +118,9 @@ impl MaskedOcclusionCulling {
     /// Gives the object a clear buffer of `width` by `height` pixels, each from 1 to 16,384. The size that it has already is a
     /// clear.
     ///
+    /// In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can close, and hide what
+    /// the screen shows through it; `docs/guide.md` says what to do about it.
+    ///
     /// # Errors
     /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps its buffer.
     pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {

@@ -6,7 +6,9 @@ mod support;
 
 use std::cell::RefCell;
 
-use masked_occlusion_culling::{CullingResult, Implementation, MaskedOcclusionCulling, YAxis};
+use masked_occlusion_culling::{
+    CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, Vertices, YAxis,
+};
 use oracle::{Triangle, UNIT, Vertex};
 use proptest::prelude::*;
 use support::{AXES, RULES, check, draw, name, object, test_clip};
@@ -130,4 +132,44 @@ fn thin_occludees() {
 #[test]
 fn occludees_that_leave_the_screen() {
     run(1000, 5, (-40.0..40.0f32, -40.0..40.0f32, 0.3..3.0f32).prop_map(|(x, y, w)| [x * w, y * w, w]));
+}
+
+/// Walls left and right of a gap in pixels of a screen, as an object of another size sees what is behind it.
+fn behind_a_gap((width, height): (u32, u32), screen: f32, gap: (f32, f32), rectangle: (f32, f32)) -> CullingResult {
+    let mut moc = MaskedOcclusionCulling::new(width, height, Settings::default()).unwrap();
+    let ndc = |pixel: f32| pixel / screen * 2.0 - 1.0;
+    for (x0, x1) in [(-1.0, ndc(gap.0)), (ndc(gap.1), 1.0)] {
+        let wall = [[x0, -1.0, 0.0, 1.0], [x1, -1.0, 0.0, 1.0], [x1, 1.0, 0.0, 1.0], [x0, 1.0, 0.0, 1.0]];
+        moc.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2, 0, 2, 3], &DrawOptions::default()).unwrap();
+    }
+    moc.test_rect(ndc(rectangle.0), -0.5, ndc(rectangle.1), 0.5, 2.0)
+}
+
+/// What docs/guide.md says of buffers smaller than the screen: the limit of the promise.
+#[test]
+fn a_gap_closes_in_a_buffer_whose_pixels_are_wider() {
+    let (screen, gap) = (1920.0, (600.5, 605.5));
+    let behind = (500.0, 700.0);
+    assert_eq!(behind_a_gap((1920, 1080), screen, gap, behind), CullingResult::Visible);
+    // A pixel of this buffer is six of the screen's: its centres are at 597 and 603, and at 603 the gap is open.
+    assert_eq!(behind_a_gap((320, 180), screen, gap, behind), CullingResult::Visible);
+    // Between two centres.
+    assert_eq!(behind_a_gap((320, 180), screen, (597.5, 602.5), behind), CullingResult::Occluded);
+    assert_eq!(behind_a_gap((640, 360), screen, (597.5, 602.5), behind), CullingResult::Visible);
+}
+
+/// The guide's remedy for straight silhouettes: a rectangle that is one buffer pixel larger on each side.
+#[test]
+fn a_larger_rectangle_makes_up_for_a_straight_edge_between_pixel_centres() {
+    let (screen, pixel) = (1920.0, 6.0);
+    let mut culled = 0;
+    for step in 0..48 {
+        // The right wall begins beyond the screen.
+        let gap = (600.0 + step as f32 / 8.0, 3000.0);
+        let sticks_out = (500.0, gap.0 + 0.25);
+        culled += u32::from(behind_a_gap((320, 180), screen, gap, sticks_out) == CullingResult::Occluded);
+        let larger = (sticks_out.0 - pixel, sticks_out.1 + pixel);
+        assert_eq!(behind_a_gap((320, 180), screen, gap, larger), CullingResult::Visible, "{gap:?}");
+    }
+    assert!(culled > 0, "there is nothing to make up for");
 }

@@ -132,8 +132,9 @@ pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 /// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
 /// MOC_UPDATE_RULE_FOUR_LAYER).
 ///
-/// It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
-/// centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
+/// It may be smaller than the screen: that takes less time and culls less. But MOC_OCCLUDED then means hidden at the buffer's
+/// pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the screen shows through
+/// it. At 320x180 for a screen of 1920x1080, gaps of 5 screen pixels can. docs/guide.md says what to do about it.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is drawing into
 /// the object. The object keeps
