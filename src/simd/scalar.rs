@@ -1,4 +1,4 @@
-//! Four lanes in plain Rust: runs anywhere, under Miri too, and is the reading of the others.
+//! Four lanes in plain Rust: runs anywhere, and is the reference implementation for the others.
 
 use super::pair::Pair;
 use super::{Job, Outlined, Simd, record, store_relaxed, strided};
