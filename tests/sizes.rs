@@ -5,7 +5,7 @@ mod support;
 
 use masked_occlusion_culling::{
     CullingResult::Occluded, CullingResult::Visible, Error, Implementation, MaskedOcclusionCulling, ScissorRect,
-    TriList, UpdateRule, Vertices, YAxis,
+    Settings, TriList, UpdateRule, Vertices, YAxis,
 };
 use support::{AXES, RULES, both_sides, depth, draw_clip, name, object, wall};
 
@@ -221,7 +221,7 @@ fn bins_are_whole_tiles() {
         ((16384, 16), (512, 2), (32, 8)),
         ((95, 23), (2, 2), (32, 8)),
     ] {
-        let mut moc = MaskedOcclusionCulling::new(w, h, Settings::default()).unwrap();
+        let moc = MaskedOcclusionCulling::new(w, h, Settings::default()).unwrap();
         assert_eq!(moc.compute_bin_size(bins_w, bins_h), Ok(size), "{w}x{h} {bins_w}x{bins_h}");
     }
 }
