@@ -89,7 +89,7 @@ pub struct MOC_RecordedCall {
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
     let start = || -> Result<(), Refusal> {
-        unsafe { Ok(with_buffer(object(moc)?)?.recorder_start(self::path(path)?).map_err(Refusal::from)?) }
+        unsafe { with_buffer(object(moc)?)?.recorder_start(self::path(path)?).map_err(Refusal::from) }
     };
     guard(|| start().because(MOC_Status::MOC_STATUS_BUSY, "a recording is under way already"))
 }
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
 #[unsafe(export_name = symbol!(MOC_RecorderStop))]
 pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { Ok(object(moc)?.recorder_stop().map_err(Refusal::from)?) })
+    guard(|| unsafe { object(moc)?.recorder_stop().map_err(Refusal::from) })
 }
 
 /// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. `result`: a MOC_CullingResult,
@@ -181,7 +181,7 @@ unsafe fn record(moc: *const MaskedOcclusionCulling, mesh: impl Describe, result
 #[unsafe(export_name = symbol!(MOC_RecordingLoad))]
 pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut MOC_Recording) -> MOC_Status {
     // SAFETY: the caller's contract.
-    guard(|| unsafe { load(out, || Ok(Recording::load(self::path(path)?).map_err(Refusal::from)?)) })
+    guard(|| unsafe { load(out, || Recording::load(self::path(path)?).map_err(Refusal::from)) })
 }
 
 /// The same of a file that was read into memory, which is not needed afterwards.
@@ -199,8 +199,8 @@ pub unsafe extern "C" fn MOC_RecordingFromMemory(
     // SAFETY: the caller's contract.
     guard(|| unsafe {
         load(out, || {
-            Ok(Recording::from_bytes(slice(bytes, size).because(MOC_Status::MOC_STATUS_NULL_POINTER, "bytes is null")?)
-                .map_err(Refusal::from)?)
+            Recording::from_bytes(slice(bytes, size).because(MOC_Status::MOC_STATUS_NULL_POINTER, "bytes is null")?)
+                .map_err(Refusal::from)
         })
     })
 }
