@@ -19,10 +19,9 @@ const PLAIN: Vec3 = Vec3::new(0.72, 0.7, 0.66);
 pub fn load(path: &Path) -> Result<Scene> {
     let (scene, dropped) = read(path)?;
     if dropped > 0 {
-        eprintln!(
-            "{}: {dropped} triangles are dropped: they have a vertex that is not a finite number",
-            path.display()
-        );
+        let all = dropped + scene.num_triangles();
+        let why = "dropped, with a vertex that is not a finite number";
+        eprintln!("{}: triangles {why}: {dropped} of {all}", path.display());
     }
     Ok(scene)
 }
