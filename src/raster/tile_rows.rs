@@ -225,7 +225,7 @@ impl<'a> TileRows<'a> {
         let place = unsafe { t.load_i(self.lists.place.as_ptr().add(k).cast()) };
         let lane = t.sra::<PLACE_SHIFT>(place);
         let row = t.and(place, t.i(LOW as i32));
-        // SAFETY: lanes of a batch, whose arrays hold any vector.
+        // SAFETY: lanes of a batch, whose arrays are as long as the widest vector.
         let of = |field: &Lanes<f32>| unsafe { t.lookup(field.as_ptr(), lane) };
         // SAFETY: as above.
         let of_i = |field: &Lanes<u32>| unsafe { t.bits(t.lookup(field.as_ptr().cast(), lane)) };
@@ -243,7 +243,7 @@ impl<'a> TileRows<'a> {
         let slope = of(&edges.middle_slope);
         let middle_left = span.bounds(of(&edges.middle_left), slope);
         let middle_right = span.bounds(of(&edges.middle_right), slope);
-        // All rows lie between these events: tiles between them are covered wholly.
+        // All rows of the span lie between these events, so tiles between them are fully covered.
         let inner_left = t.min(t.max(t.max(left[1], middle_left[1]), column0), column1);
         let inner_right = t.max(t.min(t.min(right[0], middle_right[0]), column1), column0);
         let whole = t.and_m(t.le(of(&batch.row0), top), t.le(bottom, of(&batch.row1)));
@@ -251,7 +251,7 @@ impl<'a> TileRows<'a> {
         let inner_end = t.sra::<5>(t.trunc(inner_right));
         let inner = t.select_i(whole, t.max_i(t.sub_i(inner_end, inner_first), t.i(0)), t.i(0));
 
-        // No row reaches beyond these.
+        // No row extends past these.
         let left = t.min(t.max(t.max(left[0], middle_left[0]), column0), column1);
         let right = t.max(t.min(t.min(right[1], middle_right[1]), column1), column0);
         // Events are rounded down.
@@ -275,7 +275,7 @@ impl<'a> TileRows<'a> {
         }
         store!(i first, t.or(number, first));
         store!(i count, count);
-        // Exact: there are at most 2^20 tiles.
+        // Exact, because there are at most 2^20 tiles.
         let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
         if height::<T>() == 1 {
             let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
@@ -307,7 +307,7 @@ impl<'a> TileRows<'a> {
         }
     }
 
-    /// Lists candidate tiles, as many as there is room for.
+    /// Lists as many candidate tiles as there is room for.
     #[inline(always)]
     fn find_candidates<T: Simd, S: TileOp<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect) -> Candidates {
         if clip == buffer.all_tiles() {
@@ -317,18 +317,18 @@ impl<'a> TileRows<'a> {
         }
     }
 
-    /// The same where the clip is the `WHOLE` buffer, or not: then another thread may be writing beside it.
+    /// `WHOLE`: the clip is the whole buffer; otherwise another thread may be writing next to it.
     #[inline(always)]
     fn find_candidates_in<T: Simd, S: TileOp<T>, const WHOLE: bool>(&mut self, t: T, buffer: &Buffer) -> Candidates {
         let (mut tile_rows, mut tiles) = (0, 0);
-        // Candidates of a wide tile row, which takes several rounds and is listed after the last.
+        // Candidates found so far in a wide tile row, which takes several rounds and is listed after the last one.
         let mut before = 0;
         while self.next < self.listed && tiles < TILES {
             let k = self.next;
             let lists = &mut *self.lists;
-            // SAFETY: the tile rows listed were bounded; the loop checks the room for the lists, and after the last
-            // there is room for a vector. `z_min` is read of tiles of the buffer, where there is room for a
-            // vector after the last, and where another thread may be writing, no others.
+            // SAFETY: the listed tile rows were bounded. The loop checks that the lists have room, and they are padded
+            // by a vector. `z_min` is only read for tiles of the buffer, with room for a vector after the last one;
+            // where another thread may be writing, only tiles of the clip are read.
             unsafe {
                 let first = lists.first.get_unchecked(k).assume_init();
                 let count = lists.count.get_unchecked(k).assume_init();
@@ -352,7 +352,7 @@ impl<'a> TileRows<'a> {
                     before = 0;
                     self.next += 1;
                 } else {
-                    // The rest comes in another round.
+                    // The rest follows in another round.
                     before += n;
                     lists.first.get_unchecked_mut(k).write(first + T::LANES as u32);
                     lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
@@ -361,21 +361,21 @@ impl<'a> TileRows<'a> {
         }
         tile_rows += usize::from(before != 0);
         if T::LANES == MAX_LANES {
-            // Whole vectors are located.
-            // SAFETY: there is room for a vector after the last.
+            // Only whole vectors are located.
+            // SAFETY: there is room for a vector after the last tile.
             unsafe { t.store_i(self.lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.i(0)) };
         }
         Candidates { tile_rows, tiles }
     }
 }
 
-/// The two numbers of a word of a list.
+/// The two halves of a list's word.
 #[inline(always)]
 pub(super) fn unpack(word: u32) -> (usize, u32) {
     ((word >> PLACE_SHIFT) as usize, word & LOW)
 }
 
-/// A vector of spans of rows of pixels, from the first to the last.
+/// A vector of spans of pixel rows, first and last inclusive.
 struct Span<T: Simd> {
     t: T,
     y0: T::F,
@@ -383,7 +383,7 @@ struct Span<T: Simd> {
 }
 
 impl<T: Simd> Span<T> {
-    /// The least and the largest that the event of an edge can be in the span.
+    /// The least and the largest event that an edge can have in the span.
     #[inline(always)]
     fn bounds(&self, constant: T::F, slope: T::F) -> [T::F; 2] {
         let t = self.t;
