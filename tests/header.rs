@@ -1,6 +1,5 @@
 //! `include/masked_occlusion_culling.h` matches the output of cbindgen for `src/capi`, and `moc_names.h` and
-//! `moc_names_end.h`
-//! list the functions exported there. `UPDATE_HEADER=1 cargo test --test header` regenerates them.
+//! `moc_names_end.h` list the functions exported there. `UPDATE_HEADER=1 cargo test --test header` regenerates them.
 
 use std::fs;
 use std::path::Path;

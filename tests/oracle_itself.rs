@@ -100,7 +100,7 @@ fn distances_have_the_sign_of_the_spans() {
     });
 }
 
-/// The double-precision plane matches the barycentric weights within the triangle, and passes through the corners.
+/// The plane in twice double precision matches the barycentric weights within the triangle, and passes through the corners.
 #[test]
 fn planes_go_through_their_corners() {
     check(1000, 4, &of_any_kind(SIZE), |t| {

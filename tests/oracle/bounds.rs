@@ -33,7 +33,7 @@ fn sum(a: f64, b: f64) -> (f64, f64) {
     (s, (a - (s - t)) + (b - t))
 }
 
-/// 1/w of the triangle's plane at a point given in units, with sums and products in twice the precision: for slivers,
+/// 1/w of the triangle's plane at a point given in units, with sums and products in twice double precision: for slivers,
 /// large numbers cancel.
 pub fn plane_at(t: &Triangle, x: i64, y: i64) -> f64 {
     let edge = |a: &Vertex, b: &Vertex| (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
