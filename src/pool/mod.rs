@@ -70,7 +70,7 @@ const CALL_TRIANGLES: usize = 1536;
 /// pool.set_buffer(culling);
 /// pool.wake_threads();
 ///
-/// // A wall 10 before the eye, which looks along -z: w is -z.
+/// // A wall 10 in front of the eye, which looks along -z: w is -z.
 /// let wall = [[-20.0, -20.0, -10.0], [20.0, -20.0, -10.0], [20.0, 20.0, -10.0], [-20.0, 20.0, -10.0]];
 /// let perspective = [1.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, -0.2, 0.0];
 /// let wall = Vertices::model_space(&wall, perspective);

@@ -133,8 +133,8 @@ impl Target {
         self.clears.load(Ordering::Acquire)
     }
 
-    /// Have all bins performed the clears before a call? Then everything in the buffer was drawn after the clear that
-    /// precedes it.
+    /// Have all bins performed the clears before a call? Then everything in the buffer was drawn after them and before
+    /// the call.
     fn is_cleared(&self, clears: u64) -> bool {
         self.bins.iter().all(|bin| bin.clears.load(Ordering::Acquire) >= clears)
     }

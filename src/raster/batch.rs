@@ -1,4 +1,4 @@
-//! A vector of triangles between setup and traversal.
+//! A vector of triangles between set-up and traversal.
 
 use core::mem::MaybeUninit;
 
@@ -11,7 +11,7 @@ pub(crate) struct Lanes<X: Copy>([MaybeUninit<X>; MAX_LANES]);
 
 impl<X: Copy> Lanes<X> {
     /// # Safety
-    /// Setup stored this field for this lane.
+    /// Set-up stored this field for this lane.
     #[inline(always)]
     pub unsafe fn get(&self, lane: usize) -> X {
         // SAFETY: the caller's contract.
@@ -93,7 +93,7 @@ impl Batch {
     /// First and last column and row of tiles of a triangle's bounds.
     #[inline(always)]
     pub fn tiles(&self, lane: usize) -> [u32; 4] {
-        // SAFETY: setup stores the tiles of every box.
+        // SAFETY: set-up stores the tiles of all bounds.
         unsafe { [self.tile_x0.get(lane), self.tile_x1.get(lane), self.tile_y0.get(lane), self.tile_y1.get(lane)] }
     }
 }

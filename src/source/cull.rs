@@ -150,7 +150,7 @@ impl<S: Simd> Packet<S> {
     }
 }
 
-/// Does a pixel's centre, with pixels of `size`, lie in the half-open range from `min` to `max`?
+/// Does the half-open range from `min` to `max` contain the centre of one of an axis's `size` pixels?
 #[inline(always)]
 fn holds_centre<S: Simd>(s: S, min: S::F, max: S::F, size: u32) -> S::M {
     let first = s.sra::<8>(s.add_i(s.round(min), s.i(127)));
@@ -207,7 +207,7 @@ mod tests {
         (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
     }
 
-    /// Does the bounding box hold the centre of a pixel on the screen?
+    /// Do the bounds contain the centre of a pixel on the screen?
     fn holds_a_centre(t: [[f32; 2]; 3]) -> bool {
         [SIZE.0, SIZE.1].into_iter().enumerate().all(|(axis, size)| {
             let v = t.map(|v| v[axis] as i64);

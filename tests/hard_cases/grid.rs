@@ -124,7 +124,7 @@ fn guard_band(beyond: i64, exact: bool) -> Measured {
     measured
 }
 
-/// In front of a buffer of random walls: an occludee visible at a pixel's centre is not reported hidden.
+/// Against a buffer of random walls: an occludee visible at a pixel's centre is not reported hidden.
 fn queries() -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     let mut oracle = Oracle::new(SIZE.0, SIZE.1);

@@ -50,7 +50,7 @@ impl<R: Rule> Job for Sequence<'_, R> {
         for step in self.steps {
             let mut seen = Seen { layers: vec![[(0, 0.0); N]; R::LAYERS], merged: 0, hidden: 0 };
             for first in (0..N).step_by(S::LANES) {
-                // SAFETY: arrays of N lanes, planes of N words, and a vector from `first` on lies inside of both.
+                // SAFETY: arrays of N lanes, planes of N words, and a vector starting at `first` is inside both.
                 unsafe {
                     let p = memory.0.as_mut_ptr().add(first);
                     let (mask, depth) =
@@ -199,7 +199,7 @@ impl Model {
             let behind = if k == last { self.reference } else { self.layers[k + 1].1 };
             if k > 0 && self.layers[k - 1].0 == mask { 0.0 } else { z - behind }
         };
-        // Of equal losses the farthest full layer, otherwise the nearest.
+        // On a tie the farthest layer goes, or else the nearest of those with equal losses.
         let least = (0..last).reduce(|a, b| if loss(b) < loss(a) { b } else { a }).unwrap_or(last);
         let dropped = if loss(last) <= loss(least) { last } else { least };
         self.layers.remove(dropped);
