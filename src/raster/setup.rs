@@ -28,7 +28,6 @@
 //! width of the bounds + |slope down| * height of the bounds`: rounding the three values, the corner, the margin and
 //! the steps to the sub-tile sums to at most `10 u a`, and a vertex's depth adds one more `u a`. The margin is `16 u a`
 //! plus the f64 term above. On slivers it is large, and the clamp decides.
-//! was said of f64. On slivers it is large, and the clamp decides.
 
 use super::batch::Batch;
 use super::hiz_test::{self, HizScope};

@@ -90,7 +90,8 @@ fn layers(rule: UpdateRule) -> Measured {
                 assert!(t.iter().all(|v| v.x % (UNIT / 2) == 0 && v.y % (UNIT / 2) == 0));
                 // Where something has already been drawn, coverage can no longer be wrong.
                 measured.pixels += oracle.depth.iter().filter(|d| **d < 0.0).count() as u64;
-                // If it is visible before it is drawn, it must not be reported hidden then, nor afterwards (it does not hide itself).
+                // If it is visible before it is drawn, it must not be reported hidden then, nor afterwards, since it does not
+                // hide itself.
                 if oracle.shows(&t) {
                     measured.shown(subject.test_clip(&corners));
                     subject.draw_clip(&corners);
