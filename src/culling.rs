@@ -251,8 +251,8 @@ impl MaskedOcclusionCulling {
     ///
     /// Every pixel that a triangle touches counts, not only those whose centre it covers. The answer is also `Visible`
     /// for triangles with a NaN or infinite coordinate and for those that come closer to the eye than can be projected.
-    /// It is `ViewCulled` if no front-facing triangle touches a pixel, or `Occluded` if everything around them is
-    /// hidden.
+    /// If no front-facing triangle touches a pixel, it is `ViewCulled`, or `Occluded` if everything around the
+    /// triangles is hidden.
     ///
     /// The answer is for the triangles, not for the volume that they enclose: treat a box that crosses the near plane
     /// or contains the eye as visible.

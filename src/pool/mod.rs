@@ -250,7 +250,7 @@ impl CullingThreadpool {
     /// The vertices and the indices must not change until the pool has been flushed.
     ///
     /// # Errors
-    /// Those of that function, and [`Error::NoObject`].
+    /// Those of that method, and [`Error::NoObject`].
     pub unsafe fn render_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -313,7 +313,7 @@ impl CullingThreadpool {
     /// The others must not move or change until the pool has been flushed.
     ///
     /// # Errors
-    /// Those of that function, and [`Error::NoObject`].
+    /// Those of that method, and [`Error::NoObject`].
     pub unsafe fn merge_buffers(&self, others: &[&MaskedOcclusionCulling]) -> Result<(), Error> {
         self.gate.with_buffer(|target| {
             // Merging a buffer with itself has no effect.
@@ -345,7 +345,7 @@ impl CullingThreadpool {
     /// is `Visible` if they are hidden only by contents that a pending clear will remove, even if they touch no pixel.
     ///
     /// # Errors
-    /// Those of that function, and [`Error::NoObject`].
+    /// Those of that method, and [`Error::NoObject`].
     pub fn test_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -372,7 +372,7 @@ impl CullingThreadpool {
     /// Flushes, and writes the depth of every pixel; see [`MaskedOcclusionCulling::compute_pixel_depth_buffer`].
     ///
     /// # Errors
-    /// Those of that function, and [`Error::NoObject`].
+    /// Those of that method, and [`Error::NoObject`].
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
         self.with_pixels(|_| Ok::<_, Error>(depth), flip_y)
     }
@@ -439,7 +439,7 @@ impl<'e> Scope<'e> {
     /// As [`CullingThreadpool::render_triangles`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method.
     pub fn render_triangles(
         &self,
         vertices: Vertices<'e>,
@@ -453,7 +453,7 @@ impl<'e> Scope<'e> {
     /// As [`CullingThreadpool::merge_buffers`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method.
     pub fn merge_buffers(&self, others: &[&'e MaskedOcclusionCulling]) -> Result<(), Error> {
         // SAFETY: as above; objects that the pool owns cannot be lent.
         unsafe { self.pool.merge_buffers(others) }

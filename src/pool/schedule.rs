@@ -15,10 +15,10 @@ pub(super) const BATCH_WEIGHT: usize = 2048;
 pub(super) const CALL_WEIGHT: usize = 16;
 /// An open batch of this weight is worth a thread's time.
 pub(super) const WORTHWHILE: usize = 512;
-/// Weight of ready work that a thread's own bin may lag behind by before the thread draws it instead of binning more.
+/// The weight of ready work by which a thread's own bin may lag behind before the thread draws instead of binning more.
 const LEAD: usize = 5 * BATCH_WEIGHT / 2;
 /// The same for a bin in which another thread drew last, so that its tiles are in that thread's cache, or in which
-/// nobody drew yet.
+/// nobody has drawn yet.
 const FOREIGN_BIN_LAG: usize = 2 * LEAD;
 /// The most batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;

@@ -251,7 +251,7 @@ pub(crate) trait Simd: Copy {
     }
     /// [`Self::load_some`] with `fill` after the first `n` values.
     /// # Safety
-    /// As there.
+    /// As [`Self::load_some`].
     #[inline(always)]
     unsafe fn load_filled(self, p: *const u32, n: usize, fill: u32) -> Self::I {
         // SAFETY: the caller's contract.
@@ -259,7 +259,7 @@ pub(crate) trait Simd: Copy {
     }
     /// [`Self::gather_pairs`] of words that other threads may be writing with [`store_relaxed`].
     /// # Safety
-    /// As there.
+    /// As [`Self::gather_pairs`].
     #[inline(always)]
     unsafe fn gather_pairs_relaxed(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
         let (mut indices, mut words) = ([0_u32; MAX_LANES], [[0_u32; MAX_LANES]; 2]);
