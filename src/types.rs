@@ -143,7 +143,7 @@ impl core::ops::BitOr for ClipPlanes {
     }
 }
 
-/// A layout in the form used by C and the kernel, where the context tells which coordinate the last offset is for.
+/// A layout in the form used by C and the kernel, where the context determines which coordinate the last offset is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct VertexLayout {
     /// Bytes from one vertex to the next; not negative.

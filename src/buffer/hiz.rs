@@ -1,7 +1,7 @@
 //! The coarse HiZ level: cells of 128x64 pixels, each holding the least `z_min` of its tiles.
 //!
 //! It finds hidden triangles that are too large for their tiles to be looked up one by one, before their edges are set
-//! up. Between two clears a tile's `z_min` only rises, so a cell may lag behind its tiles: all that happens is that a
+//! up. Between two clears a tile's `z_min` only rises, so a cell may lag behind its tiles: the worst effect is that a
 //! hidden triangle gets through. Cells are therefore refreshed only after enough tiles have been drawn into, by the one
 //! thread that draws there.
 

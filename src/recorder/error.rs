@@ -17,7 +17,7 @@ pub enum RecordingError {
     Invalid {
         /// Offset of the first invalid byte of the file.
         offset: usize,
-        /// What is wrong there.
+        /// The error at that byte.
         why: &'static str,
     },
 }

@@ -121,8 +121,8 @@ impl Recording {
         reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "no buffer has this resolution")?;
         let mut calls = Vec::new();
         loop {
-            // A call may be as small as one byte of the file, so running out of memory must be an error and not abort
-            // the program.
+            // A call may be as small as one byte of the file, so running out of memory must be an error instead of
+            // aborting the program.
             calls.try_reserve(1).map_err(|_| RecordingError::OutOfMemory)?;
             reader.check(calls.len() < i32::MAX as usize, "more calls than can be counted")?;
             calls.push(match reader.byte()? {

@@ -1,8 +1,8 @@
 //! The exact answer, slow and sharing no code with the library.
 //!
-//! Triangles are in screen space: x and y in 1/256 pixel, y in the direction in which rows are counted (row 0 first), z
-//! = 1/w. Coverage is decided in 64-bit integers: a triangle covers the rows whose centre is at or after its least y
-//! and strictly before its greatest; in a row, it covers the pixels from the first one whose centre is on or to the
+//! Triangles are in screen space: x and y in 1/256 pixel, y in the direction in which rows are counted (row 0 first),
+//! and z = 1/w. Coverage is decided in 64-bit integers: a triangle covers the rows whose centre is at or after its least
+//! y and strictly before its greatest; in a row, it covers the pixels from the first one whose centre is on or to the
 //! right of the left edge to the last one strictly left of the right edge.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
