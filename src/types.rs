@@ -92,7 +92,7 @@ impl CullingResult {
 /// The frustum planes that a mesh may cross: a set of flags.
 ///
 /// Only `NEAR` has an effect: without it the object's near plane is not applied (geometry behind the eye is always
-/// clipped). The side planes are no promise by the caller; leaving one out is always safe and never faster.
+/// clipped). Omitting a side plane does not promise that the mesh stays inside it: it is always safe, and never faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClipPlanes(u8);
 

@@ -416,7 +416,7 @@ fn no_answer_of_a_pool_is_recorded_that_may_be_another_one_later() {
     let both_sides = DrawOptions::default().with_winding(BackfaceWinding::None);
     let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(1).with_max_jobs(8)).unwrap();
     pool.wake_threads();
-    // Without this precaution one in some hundred would fail.
+    // Without this precaution one in a few hundred would fail.
     for _ in 0..1000 {
         let moc = object(300, 200);
         moc.recorder_start(&path).unwrap();
@@ -444,7 +444,7 @@ fn what_several_threads_submit_is_recorded_as_it_is_drawn() {
     let path = folder.file("threads.mocrec");
     let wall = [[-9.0f32, -9.0, 0.0, 3.0], [9.0, -9.0, 0.0, 3.0], [0.0, 9.0, 0.0, 3.0]];
     let both_sides = DrawOptions::default().with_winding(BackfaceWinding::None);
-    // Without this precaution one in some thousand would fail.
+    // Without this precaution one in a few thousand would fail.
     for _ in 0..2000 {
         let moc = object(64, 64);
         moc.recorder_start(&path).unwrap();
