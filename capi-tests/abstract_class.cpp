@@ -1,5 +1,5 @@
-// A program against a class of virtual methods (abstract_header), linked with link/ and the library: every method, the
-// switches of the command line, memory, and the pool.
+// A program for a class with virtual methods (abstract_header), linked with link/ and the library: every method, the
+// switches from the command line, memory, and the pool.
 #include "check.h"
 
 #include "CullingThreadpool.h"
@@ -26,7 +26,7 @@ void *CountingAlloc(size_t alignment, size_t size)
     char *base = static_cast<char *>(malloc(size + 2 * alignment + sizeof(void *)));
     char *block = base + sizeof(void *);
     block += alignment - reinterpret_cast<uintptr_t>(block) % alignment;
-    // The second allocation is that of the object with the methods.
+    // The second allocation is the object with the methods.
     if (misaligned && allocations % 2 == 0)
         block += 1;
     memcpy(block - sizeof(void *), &base, sizeof(void *));
@@ -81,7 +81,7 @@ void EveryMethod(MOC *moc)
     CHECK(transformed[0] == -2 && transformed[2] == 10 && transformed[3] == 20);
     CHECK(moc->TestTriangles(transformed, QUAD, 1) == MOC::OCCLUDED);
 
-    // The wall reaches farther down than up.
+    // The wall extends farther down than up.
     const std::vector<float> depth = Depth(moc);
     CHECK(depth[0] < 0.0f && depth[90 * 320 + 160] > 0.0999f && depth[90 * 320 + 160] <= 0.1f);
     CHECK((depth[50 * 320 + 160] < 0.0f) == (USE_D3D != 0));
@@ -152,7 +152,7 @@ void Bins(MOC *moc)
     pool.SuspendThreads();
 }
 
-// What the command line asks for is what the object got.
+// The object has the settings that the command line requests.
 void Switches(bool chosen)
 {
     MOC *moc = MOC::Create();

@@ -1,4 +1,4 @@
-// The methods that record: link/ calls them, and the program has them, as with the library that ours stands in for.
+// The recording methods: link/ calls them, and the program defines them, as with Intel's library.
 #include "check.h"
 
 #include "FrameRecorder.h"
@@ -21,7 +21,7 @@ bool MaskedOcclusionCulling::RecorderStart(const char *) const
 
 void MaskedOcclusionCulling::RecorderStop() const
 {
-    CHECK(mRecorder != nullptr); // without one it would crash
+    CHECK(mRecorder != nullptr); // otherwise it would crash
     mRecorder = nullptr;
     stops++;
 }
@@ -60,7 +60,7 @@ int main()
     MOC::Destroy(moc);
     CHECK_EQ(stops, 1);
 
-    // What is destroyed while it records is stopped first.
+    // An object that is destroyed while recording is stopped first.
     moc = MOC::Create();
     moc->RecorderStart("somewhere");
     MOC::Destroy(moc);

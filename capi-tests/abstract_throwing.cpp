@@ -1,5 +1,5 @@
-// Allocation callbacks that throw, in a program whose class has virtual methods: Create and SetResolution rethrow, nothing
-// leaks, and the object keeps its buffer.
+// Allocation callbacks that throw, in a program whose class has virtual methods: Create and SetResolution rethrow,
+// nothing leaks, and the object keeps its buffer.
 #include "check.h"
 
 #include <stddef.h>

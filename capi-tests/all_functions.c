@@ -1,4 +1,4 @@
-/* Every function of the C interface, with every implementation and update rule that there is. Those of the pool are in
+/* Every function of the C interface, with every implementation and update rule. Those of the pool are in
  * thread_pool_c.c. */
 #include "check.h"
 #include "masked_occlusion_culling.h"
@@ -50,7 +50,7 @@ static int32_t test_rect(const MaskedOcclusionCulling *moc, float xmin, float ym
     return result;
 }
 
-/* How many pixels of the depth buffer hold something, in rows first to last - 1. */
+/* How many pixels of the depth buffer are not empty, in rows first to last - 1. */
 static int covered(const float *depth, int first, int last)
 {
     int i, n = 0;
@@ -111,14 +111,14 @@ static void wall(int32_t implementation, int32_t rule, int32_t y_axis)
     int y;
     CHECK_EQ(MOC_SetResolution(moc, W, H), MOC_STATUS_OK);
 
-    /* Nothing is drawn: nothing is hidden. */
+    /* Nothing has been drawn, so nothing is hidden. */
     CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
     CHECK_EQ(covered(depth, 0, H), 0);
     CHECK_EQ(test_rect(moc, -0.5f, -0.5f, 0.5f, 0.5f, 100.0f), MOC_VISIBLE);
     quad_at(quad, -0.5f, -0.5f, 0.5f, 0.5f, 100.0f);
     CHECK_EQ(test(moc, quad), MOC_VISIBLE);
 
-    /* The upper half of the view, at 10. */
+    /* The upper half of the view, 10 away. */
     quad_at(quad, -2.0f, 0.0f, 2.0f, 2.0f, 10.0f);
     CHECK_EQ(render(moc, quad), MOC_VISIBLE);
     CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, depth, 0), MOC_STATUS_OK);
@@ -252,7 +252,7 @@ static void checked(int32_t implementation)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
-/* A mesh as a struct gives the bits and answers of the same arguments one by one. */
+/* A mesh passed as a struct gives the same bits and answers as the same arguments passed individually. */
 static void meshes(int32_t implementation)
 {
     static float expected[W * H], depth[W * H];
@@ -357,7 +357,7 @@ static void meshes(int32_t implementation)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
-/* Structs of a smaller size than the library's are refused, and of larger ones it writes what it knows. */
+/* Structs smaller than the library's are rejected; in larger ones it writes the fields that it knows. */
 static void sizes(void)
 {
     struct {
@@ -429,7 +429,7 @@ static void bins(int32_t implementation, int32_t rule, int32_t y_axis)
     CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, binned, 0), MOC_STATUS_OK);
     CHECK(memcmp(direct, binned, sizeof direct) == 0);
 
-    /* One bin, drawn without a rectangle. */
+    /* One bin, drawn without a scissor rectangle. */
     lists[0].count = 0;
     MOC_ClearBuffer(moc);
     CHECK_EQ(MOC_BinTriangles(moc, vertices, indices, N, lists, 1, 1, NULL, MOC_BACKFACE_NONE, MOC_CLIP_PLANE_ALL,
@@ -438,7 +438,7 @@ static void bins(int32_t implementation, int32_t rule, int32_t y_axis)
     CHECK_EQ(MOC_ComputePixelDepthBuffer(moc, binned, 0), MOC_STATUS_OK);
     CHECK(memcmp(direct, binned, sizeof direct) == 0);
 
-    /* A full list takes no more, and says so. */
+    /* A full list takes no more triangles, and the call reports it. */
     lists[0].count = 0;
     lists[0].capacity = 3;
     CHECK_EQ(MOC_BinTriangles(moc, vertices, indices, N, lists, 1, 1, NULL, MOC_BACKFACE_NONE, MOC_CLIP_PLANE_ALL,

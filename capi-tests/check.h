@@ -1,4 +1,4 @@
-/* What the test programs share: checks that say what failed, and a few meshes. C99 and C++11. */
+/* Shared by the test programs: checks that report what failed, and a few meshes. C99 and C++11. */
 #ifndef CAPI_TESTS_CHECK_H
 #define CAPI_TESTS_CHECK_H
 
@@ -9,7 +9,7 @@
 
 static int check_failures = 0;
 
-/* Counts and prints a condition that does not hold; the program goes on. */
+/* Counts and prints a condition that does not hold; the program continues. */
 #define CHECK(condition)                                                                  \
     do {                                                                                  \
         if (!(condition)) {                                                               \
@@ -40,7 +40,7 @@ static inline int check_report(const char *program)
 /* Two triangles, counter-clockwise with y up. */
 static const uint32_t QUAD[6] = {0, 1, 2, 0, 2, 3};
 
-/* A rectangle of normalised device coordinates at distance w, as clip-space x, y, z, w. */
+/* A rectangle in normalised device coordinates at distance w, as clip-space x, y, z, w. */
 static inline void quad_at(float *out16, float xmin, float ymin, float xmax, float ymax, float w)
 {
     const float corners[4][2] = {{xmin, ymin}, {xmax, ymin}, {xmax, ymax}, {xmin, ymax}};
@@ -53,7 +53,7 @@ static inline void quad_at(float *out16, float xmin, float ymin, float xmax, flo
     }
 }
 
-/* A repeatable sequence of numbers. */
+/* A reproducible sequence of numbers. */
 static inline uint32_t next_random(uint32_t *state)
 {
     *state = *state * 1664525u + 1013904223u;
@@ -66,7 +66,7 @@ static inline float next_unit(uint32_t *state)
     return (float)next_random(state) / 8388608.0f - 1.0f;
 }
 
-/* Fills n triangles of different sizes, all around and beyond the view: 12 floats and 3 indices each. */
+/* Fills n triangles of different sizes, all around the view and beyond it: 12 floats and 3 indices each. */
 static inline void random_triangles(float *vertices, uint32_t *indices, int n, uint32_t seed)
 {
     int t, v;

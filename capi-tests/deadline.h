@@ -1,4 +1,4 @@
-/* A call that hangs is a failure too: the process ends when its time limit is up. C99 and C++11. */
+/* A call that hangs is a failure too: the process ends after a time limit. C99 and C++11. */
 #ifndef CAPI_TESTS_DEADLINE_H
 #define CAPI_TESTS_DEADLINE_H
 

@@ -1,9 +1,9 @@
-/* Arrays that end where they have to, in guarded memory: nothing outside of them is read or written. */
+/* Arrays of exactly the required length, in guarded memory: nothing outside them is read or written. */
 #define _DEFAULT_SOURCE 1
 #include "deadline.h"
 #include "guarded_object.h"
 
-/* Arrays that end, to the byte, where they have to: nothing outside is read or written. */
+/* Arrays of the required length, exact to the byte: nothing outside them is read or written. */
 static void exact_arrays(int32_t implementation)
 {
     static const MOC_VertexLayout clip = {16, 4, 12}, padded = {16, 4, 8}, packed = {12, 4, 8}, wide = {36, 8, 20};
@@ -20,7 +20,7 @@ static void exact_arrays(int32_t implementation)
             const int vertices = n + 2;
             const int last = layout->offset_zw > layout->offset_y ? layout->offset_zw : layout->offset_y;
             const size_t bytes = (size_t)layout->stride * (size_t)(vertices - 1) + (size_t)last + 4;
-            /* Every other time the end is not at a multiple of 4. */
+            /* Every other time the end is not a multiple of 4. */
             const size_t slack = n % 2 == 0 ? 0 : 1;
             unsigned char *block = (unsigned char *)guarded_alloc(1, bytes + slack);
             float *data = (float *)(void *)block, *out = (float *)guarded_alloc(4, 16 * (size_t)vertices);

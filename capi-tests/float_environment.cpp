@@ -1,6 +1,6 @@
-// Threads whose floating-point environment was changed by an engine: other rounding modes, denormals flushed, exceptions that
-// raise a signal. Draws, tests, merges and pools give the same bits as in the default environment, nothing is raised, and the
-// environment is preserved.
+// Threads whose floating-point environment an engine has changed: other rounding modes, denormals flushed, exceptions
+// that raise a signal. Draws, tests, merges and pools give the same bits as in the default environment, no signal is
+// raised, and the environment is preserved.
 #include "check.h"
 
 #include "CullingThreadpool.h"

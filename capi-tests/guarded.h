@@ -1,4 +1,4 @@
-/* Memory with forbidden pages before and after it, so that one byte read or written outside is a crash. */
+/* Memory with inaccessible pages before and after it, so that reading or writing a single byte outside crashes. */
 #ifndef CAPI_TESTS_GUARDED_H
 #define CAPI_TESTS_GUARDED_H
 
@@ -27,7 +27,7 @@ static inline size_t guarded_page(void)
 #endif
 }
 
-/* Whole pages, readable and writable; null if none can be had. */
+/* Whole pages, readable and writable; null if there are none. */
 static inline unsigned char *guarded_map(size_t size)
 {
 #ifdef _WIN32
@@ -63,7 +63,7 @@ static inline void guarded_unmap(unsigned char *pages, size_t size)
 #endif
 }
 
-/* size bytes that end right before a forbidden page, at a multiple of alignment when size is one. */
+/* size bytes that end right before an inaccessible page, at a multiple of alignment if size is one. */
 static inline void *guarded_alloc(size_t alignment, size_t size)
 {
     const size_t page = guarded_page();
@@ -74,12 +74,12 @@ static inline void *guarded_alloc(size_t alignment, size_t size)
         return NULL;
     guarded_forbid(base + page + middle, page);
     guarded_forbid(base, page);
-    /* What lies before the block in its own pages is filled, and checked when it is released. */
+    /* The bytes before the block in its own pages are filled, and checked when it is released. */
     memset(base + page, 0xa5, middle - size);
     return base + page + middle - size;
 }
 
-/* Says when a byte before the block was written. */
+/* Reports if a byte before the block has been written. */
 static inline int guarded_intact(const void *block)
 {
     const size_t page = guarded_page();
@@ -92,7 +92,7 @@ static inline int guarded_intact(const void *block)
     return 1;
 }
 
-/* Takes back a block of `size` bytes. */
+/* Releases a block of `size` bytes. */
 static inline void guarded_release(void *block, size_t size)
 {
     const size_t page = guarded_page();
@@ -105,7 +105,7 @@ static inline void guarded_release(void *block, size_t size)
     guarded_unmap(base, middle + 2 * page);
 }
 
-/* The pair of callbacks for an object: the sizes of live blocks are kept in a table. */
+/* The pair of callbacks for an object; the sizes of live blocks are stored in a table. */
 enum { GUARDED_BLOCKS = 64 };
 static struct {
     void *block;

@@ -29,7 +29,7 @@ static inline MaskedOcclusionCulling *make(int32_t implementation, int32_t rule)
     return moc;
 }
 
-/* The object still works: a wall hides what is behind it, after a clear nothing does. */
+/* Checks that the object still works: a wall hides what is behind it, and after a clear nothing is hidden. */
 static inline void still_works(MaskedOcclusionCulling *moc)
 {
     float quad[16];

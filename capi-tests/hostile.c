@@ -1,5 +1,5 @@
-/* What no caller should do: null pointers, wrong integers, NaN and infinities. Every call has to come back with
- * the status that the header promises, and memory stays whole. */
+/* What no caller should do: null pointers, invalid integers, NaN and infinities. Every call must return the status that
+ * the header promises, and memory is intact. */
 #define _DEFAULT_SOURCE 1
 #include "deadline.h"
 #include "guarded_object.h"
@@ -8,7 +8,7 @@
 #include <limits.h>
 #include <math.h>
 
-/* No call may leave a NaN, or a depth that is not one, behind. */
+/* No call may leave behind a NaN or an invalid depth. */
 static void check_depth(const MaskedOcclusionCulling *moc)
 {
     float *depth = (float *)guarded_alloc(4, W * H * sizeof(float));
@@ -36,7 +36,7 @@ static void null_pointers(void)
     int32_t r;
     quad_at(quad, -2.0f, -2.0f, 2.0f, 2.0f, 10.0f);
 #define IS_NULL(call) CHECK_EQ(call, MOC_STATUS_NULL_POINTER)
-    /* As IS_NULL, for calls that answer into r. */
+    /* As IS_NULL, for calls that return their answer in r. */
 #define IS_NULL_VISIBLE(call)                                                             \
     do {                                                                                  \
         r = MOC_OCCLUDED;                                                                 \
@@ -113,7 +113,7 @@ static void null_pointers(void)
     IS_NULL_VISIBLE(MOC_BinTrianglesChecked(moc, quad, 16, NULL, 2, &list, 1, 1, REST));
     IS_NULL_VISIBLE(MOC_BinTrianglesChecked(moc, quad, 16, QUAD, 2, NULL, 1, 1, REST));
 
-    /* No triangles need no arrays; an empty list needs no memory. */
+    /* Zero triangles need no arrays; an empty list needs no memory. */
     CHECK_EQ(MOC_RenderTriangles(moc, NULL, NULL, 0, REST), MOC_STATUS_OK);
     CHECK_EQ(r, MOC_VIEW_CULLED);
     CHECK_EQ(MOC_TestTriangles(moc, NULL, NULL, 0, REST), MOC_STATUS_OK);
@@ -227,7 +227,7 @@ static void wrong_integers(void)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
-/* With 32-bit pointers: counts larger than any array can be. They are refused before anything is read. */
+/* With 32-bit pointers: counts larger than any array can be. They are rejected before anything is read. */
 static void larger_than_memory(void)
 {
 #if UINTPTR_MAX <= 0xffffffffu
@@ -314,7 +314,7 @@ static void no_buffer(void)
     CHECK_EQ(MOC_Destroy(other), MOC_STATUS_OK);
 }
 
-/* Pointers that no compiler would align so, and layouts that make no sense. */
+/* Misaligned pointers, and invalid layouts. */
 static void layouts(void)
 {
     const MOC_VertexLayout negative = {-16, 4, 12}, zero = {0, 4, 12}, wide = {INT_MAX, 4, 12}, back = {16, 4, -12};
@@ -368,7 +368,7 @@ static void rectangles(int32_t implementation)
                 strange++;
             if (r != MOC_VISIBLE && r != MOC_OCCLUDED && r != MOC_VIEW_CULLED)
                 strange++;
-            /* Nothing is drawn, or the rectangle is not behind the wall, or nobody knows where: never hidden. */
+            /* Nothing is drawn, or the rectangle is not behind the wall, or its position is undefined: never hidden. */
             if (r == MOC_OCCLUDED && (drawn == 0 || !(w > 1.0f) || isnan(x0) || isnan(y0) || isnan(x1) || isnan(y1)))
                 lies++;
         }
@@ -384,7 +384,7 @@ static void rectangles(int32_t implementation)
     CHECK_EQ(MOC_Destroy(moc), MOC_STATUS_OK);
 }
 
-/* Vertices, matrices, near planes and lists of strange numbers. */
+/* Vertices, matrices, near planes and lists with extreme numbers. */
 static void strange_numbers(int32_t implementation, int32_t rule)
 {
     static const float special[] = {0.0f,     -0.0f,  1.0f,    -1.0f,    0.5f,      -0.25f,   3.0f,       -7.0f,
@@ -429,7 +429,7 @@ static void strange_numbers(int32_t implementation, int32_t rule)
     }
     CHECK_EQ(lies, 0);
 
-    /* Lists that no binning filled: special numbers, then any bits. */
+    /* Lists that no binning produced: special numbers, then random bits. */
     for (round = 0; round < ROUNDS; round++) {
         const MOC_ScissorRect rect = {32, 16, 96, 64};
         for (i = 0; i < 9 * N; i++) {

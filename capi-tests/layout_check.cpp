@@ -1,4 +1,4 @@
-// Without NDEBUG a matrix with the layout of clip-space vertices is an assertion that fails, in each method that takes both.
+// Without NDEBUG, a matrix with the layout of clip-space vertices fails an assertion in each method that takes both.
 #undef NDEBUG
 #include "check.h"
 
@@ -20,7 +20,8 @@ jmp_buf before;
 
 void Aborted(int) { longjmp(before, 1); }
 
-// Whether the call is stopped by an assertion. The signal stays blocked or not as the handler leaves it, so it is set each time.
+// Whether an assertion stops the call. Whether the signal stays blocked depends on the handler, so it is installed each
+// time.
 template <class Call> bool Asserts(Call call)
 {
     if (setjmp(before) != 0)
@@ -41,7 +42,7 @@ int main(int argc, char **argv)
     MOC::TriList list = {4, 0, data};
     CullingThreadpool pool(0, 1, 1);
     pool.SetBuffer(moc);
-    // One call a run: abort() may leave its lock taken when a handler does not return.
+    // One call per run: abort() may hold its lock forever if a handler does not return.
     const int which = argc > 1 ? atoi(argv[1]) : -1;
     const MOC::VertexLayout right(16, 4, 8);
     const MOC::BackfaceWinding winding = MOC::BACKFACE_CW;

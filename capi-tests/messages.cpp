@@ -1,8 +1,8 @@
-// Refusals are silent unless the program asks: the status of the thread's last call, and a callback that receives the function,
-// the argument and what was wrong with it.
+// Rejected calls are silent unless the program asks: there is the status of the thread's last call, and a callback that
+// receives the function, the argument and the error.
 #include "check.h"
 
-// What that would stop is reported here.
+// This test reports what the assertion would stop.
 #define MOC_CHECK_LAYOUT 0
 #include "CullingThreadpool.h"
 
@@ -51,7 +51,7 @@ void Expect(int line, int status, const std::string &beginning)
 
 const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
 
-// Nothing is printed, thrown or reported before a callback is set; the status is available all the same.
+// Nothing is printed, thrown or reported before a callback is set; the status is still available.
 void Silent()
 {
     CHECK_EQ(MOC::GetLastStatus(), MOC_STATUS_OK);
@@ -136,7 +136,7 @@ void WhatIsRefused()
     MOC::Destroy(moc);
 }
 
-// Rectangles that are probably a mistake are not refused, but are reported.
+// Rectangles that are probably a mistake are accepted, but reported.
 void OddRectangles()
 {
     MOC *moc = MOC::Create();
@@ -158,7 +158,7 @@ void OddRectangles()
     MOC::Destroy(moc);
 }
 
-// A matrix with the layout of clip-space vertices is not refused, but reported.
+// A matrix with the layout of clip-space vertices is accepted, but reported.
 void MatrixWithTheLayoutOfClipSpace()
 {
     const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 10};
@@ -168,7 +168,7 @@ void MatrixWithTheLayoutOfClipSpace()
     MOC::TriList list = {4, 0, data};
     quad_at(quad, -1, -1, 1, 1, 10);
     MOC *moc = MOC::Create();
-    // Refused for another reason: one message, and none is left for the next call.
+    // Rejected for another reason: one message, and none is left over for the next call.
     moc->RenderTriangles(quad, QUAD, 2, matrix);
     EXPECT(MOC_STATUS_NO_BUFFER, "MOC_RenderTriangles: no buffer");
     moc->SetResolution(320, 200);
@@ -229,7 +229,8 @@ void Pool()
     MOC::Destroy(moc);
 }
 
-// A callback may call the library; refusals of those calls are not reported, and the status is that of the outer call.
+// A callback may call the library; rejections of those calls are not reported, and the status is that of the outer
+// call.
 int depth = 0;
 void Recursive(void *user, int, const char *)
 {
@@ -250,7 +251,7 @@ void CallbacksThatCall()
     CHECK_EQ(moc->GetLastStatus(), MOC_STATUS_NO_BUFFER);
     moc->ClearBuffer();
     CHECK_EQ(depth, 2);
-    // A message about a call that was not refused leaves its status OK.
+    // A message about an accepted call leaves its status OK.
     moc->SetResolution(64, 64);
     moc->TestRect(1, 1, -1, -1, 1);
     CHECK_EQ(depth, 3);
@@ -291,7 +292,7 @@ void Threads()
     ends = true;
     changes.join();
     CHECK(heard <= threads * rounds / 2);
-    // Every message arrives when the callback does not change.
+    // No message is lost while the callback does not change.
     heard = 0;
     MOC::SetMessageCallback(Count, &heard);
     for (int i = 0; i < 100; ++i)

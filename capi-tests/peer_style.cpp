@@ -1,4 +1,4 @@
-// A program as engines write it: every method of the class, every default argument, allocators of its own.
+// A program as engines write it: every method of the class, every default argument, its own allocators.
 #define ENABLE_STATS 1
 #include "check.h"
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-class MaskedOcclusionCulling; // engines declare it so
+class MaskedOcclusionCulling; // as engines declare it
 
 namespace
 {
@@ -26,7 +26,7 @@ void *CountingAlloc(size_t alignment, size_t size)
     CHECK(alignment != 0 && (alignment & (alignment - 1)) == 0);
     CHECK(size % alignment == 0);
     allocations++;
-    // The pointer that malloc gave lies right before the block.
+    // The pointer from malloc is stored right in front of the block.
     char *base = static_cast<char *>(malloc(size + 2 * alignment + sizeof(void *)));
     char *block = base + sizeof(void *);
     block += alignment - reinterpret_cast<uintptr_t>(block) % alignment;
@@ -82,7 +82,7 @@ void EveryMethod()
     CHECK(moc->TestRect(-0.6f, -0.4f, 0.4f, 0.4f, 20) == MOC::VISIBLE);
     CHECK(moc->TestRect(-3.0f, -0.4f, -2.0f, 0.4f, 20) == MOC::VIEW_CULLED);
 
-    // Each default argument given, one after the other.
+    // Each default argument passed explicitly, one after the other.
     const float *v = reinterpret_cast<float *>(wall);
     CHECK(moc->RenderTriangles(v, indices, 2, nullptr) == MOC::VISIBLE);
     CHECK(moc->RenderTriangles(v, indices, 2, nullptr, MOC::BACKFACE_CCW) == MOC::VIEW_CULLED);
@@ -93,7 +93,7 @@ void EveryMethod()
                              static_cast<MOC::ClipPlanes>(MOC::CLIP_PLANE_NEAR | MOC::CLIP_PLANE_LEFT),
                              MOC::VertexLayout(16, 4, 12)) == MOC::VISIBLE);
 
-    // Model space: positions, a matrix (x' = x, y' = y, w' = z + 10), and the layout that names z.
+    // Model space: positions, a matrix (x' = x, y' = y, w' = z + 10), and a layout that gives the offset of z.
     const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 10};
     const float positions[] = {-2, -2, 10, 2, -2, 10, 0, 2, 10};
     MOC::VertexLayout layout;
@@ -109,7 +109,7 @@ void EveryMethod()
     MOC::TransformVertices(matrix, positions, transformed, 3, layout);
     CHECK(moc->TestTriangles(transformed, indices, 1) == MOC::OCCLUDED);
 
-    // The depth buffer, both ways up.
+    // The depth buffer in both row directions.
     std::vector<float> depth(320 * 180), flipped(320 * 180);
     moc->ComputePixelDepthBuffer(depth.data(), false);
     moc->ComputePixelDepthBuffer(flipped.data(), true);
@@ -142,7 +142,7 @@ void EveryMethod()
     MOC::Destroy(other);
     MOC::Destroy(nullptr);
 
-    // A size that is refused changes nothing.
+    // A rejected size changes nothing.
     moc->SetResolution(0, 180);
     moc->SetResolution(16385, 180);
     moc->GetResolution(width, height);
@@ -182,7 +182,7 @@ void Bins()
     moc->ComputePixelDepthBuffer(binned.data(), false);
     CHECK(direct == binned);
 
-    // All arguments given, one list, drawn everywhere; a full list; a rectangle that is refused.
+    // All arguments passed, one list, drawn everywhere; a full list; a rejected rectangle.
     moc->ClearBuffer();
     lists[0].mTriIdx = 0;
     moc->BinTriangles(vertices.data(), indices.data(), N, lists, 1, 1, nullptr, MOC::BACKFACE_CW, MOC::CLIP_PLANE_ALL,
@@ -218,7 +218,7 @@ void Allocators()
         quad_at(quad, -2, -2, 2, 2, 10);
         CHECK(moc->RenderTriangles(quad, QUAD, 2) == MOC::VISIBLE);
 
-        // No more memory: the buffer stays.
+        // Out of memory: the buffer stays.
         fail_after = 0;
         moc->SetResolution(1920, 1080);
         fail_after = -1;
@@ -227,7 +227,7 @@ void Allocators()
         CHECK(width == 641 && height == 3);
         CHECK(moc->TestRect(-0.5f, -0.5f, 0.5f, 0.5f, 20) == MOC::OCCLUDED);
 
-        // Memory that is not aligned is given back and not used.
+        // Misaligned memory is returned and not used.
         misaligned = true;
         moc->SetResolution(1920, 1080);
         misaligned = false;
@@ -237,7 +237,7 @@ void Allocators()
         CHECK_EQ(frees, allocations);
     }
 
-    // Every allocation of a life fails once.
+    // Makes every allocation in an object's life fail once.
     for (int n = 0; n < 8; n++) {
         fail_after = n;
         MOC *moc = MOC::Create(MOC::AVX512, CountingAlloc, CountingFree);
@@ -251,7 +251,7 @@ void Allocators()
         CHECK_EQ(frees, allocations);
     }
 
-    // One callback alone is refused; none are the library's own, which can be called.
+    // A single callback is rejected; with none, the library's own are used, which can be called.
     CHECK(MOC::Create(MOC::AVX512, CountingAlloc, nullptr) == nullptr);
     CHECK(MOC::Create(MOC::AVX512, nullptr, CountingFree) == nullptr);
     MOC *moc = MOC::Create(MOC::AVX512, nullptr, nullptr);
@@ -287,7 +287,7 @@ void Implementations()
         MOC::Destroy(moc);
     }
     CHECK(MOC::Create(static_cast<MOC::Implementation>(77)) == nullptr);
-    // A pointer to the function can be taken, as before.
+    // A pointer to the function can be taken, as with Intel's class.
     MOC *(*create)(MOC::Implementation) = &MOC::Create;
     MOC::Destroy(create(MOC::SSE41));
 }

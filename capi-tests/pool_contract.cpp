@@ -1,6 +1,6 @@
-// What engines rely on in CullingThreadpool, as promised by the header that this one replaces: what holds when a flushing call
-// returns, how many arrays are in use, that awake threads draw without a further call, and that pool and object may be used
-// side by side.
+// What engines rely on in CullingThreadpool, as promised by Intel's header: the state when a flushing call returns, how
+// many arrays are in use, that awake threads draw without a further call, and that pool and object may be used side by
+// side.
 #include "check.h"
 #include "deadline.h"
 
@@ -82,7 +82,7 @@ template <class Condition> bool Soon(Condition condition)
     return false;
 }
 
-// After ClearBuffer the buffer is clear, also when the object itself is queried.
+// When ClearBuffer returns, the buffer is clear, even for queries of the object itself.
 void ClearThenQuery()
 {
     int lies = 0;
@@ -119,7 +119,7 @@ void ClearThenDraw()
     CHECK_EQ(lost, 0);
 }
 
-// After each flushing call the arrays may be overwritten and freed: what was drawn is what they held before.
+// After each flushing call the arrays may be overwritten and freed: their previous contents have been drawn.
 void FlushThenFree()
 {
     MOC *other = Make();
@@ -146,7 +146,7 @@ void FlushThenFree()
         case 4: s.pool->SetResolution(640, 480); break;
         default: s.pool->Flush(); break;
         }
-        // Nearer, everywhere: if it were drawn after this, it would hide what is nearer than the wall.
+        // Nearer, everywhere: if it were drawn later, it would hide anything in front of the wall.
         for (unsigned int i = 0; i < 100; i++)
             quad_at(&vertices[16 * i], -3, -3, 3, 3, 1);
         wrong += s.moc->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 3) == MOC::OCCLUDED;
@@ -157,7 +157,7 @@ void FlushThenFree()
     MOC::Destroy(other);
 }
 
-// The object may be destroyed before the pool, or before the pool gets another object, with or without work in flight.
+// The object may be destroyed before the pool or before the pool gets another object, with or without work in flight.
 void DestroyInAnyOrder()
 {
     for (int way = 0; way < 24; way++) {
@@ -197,7 +197,7 @@ void DestroyInAnyOrder()
     }
 }
 
-// With a ring of two arrays and one job, a call that draws nothing or is refused counts as one of the later calls.
+// With a ring of two arrays and one job, a call that draws nothing or is rejected counts as one of the later calls.
 void RingWithAnEmptyCall()
 {
     for (int refused = 0; refused < 2; refused++) {
@@ -237,7 +237,7 @@ void Ring()
                 for (unsigned int k = 0; k < 150; k++) {
                     float *v = &vertices[static_cast<size_t>(k % slots) * 16 * MOST];
                     unsigned int *t = &indices[static_cast<size_t>(k % slots) * 6 * MOST];
-                    // A mesh may be culled to nothing, or refused: it counts among the maxJobs all the same.
+                    // A mesh may be culled entirely, or rejected: it still counts among the maxJobs.
                     if (k % 11 == 3 || k % 11 == 4) {
                         quad_at(v, -1, -1, 1, 1, 0.5f);
                         s.pool->RenderTriangles(v, t, k % 11 == 3 ? 0 : -1);
@@ -262,8 +262,8 @@ void Ring()
     CHECK_EQ(wrong, 0);
 }
 
-// Work submitted while threads are awake is drawn without another call, however little it is; SuspendThreads draws what is
-// left.
+// Work submitted while threads are awake is drawn without another call, however little it is; SuspendThreads draws the
+// rest.
 void WithoutFlush()
 {
     Setup s;
@@ -331,8 +331,8 @@ void NearPlane()
     MOC::Destroy(b);
 }
 
-// Other threads query the object itself while its pool draws and clears. Everything drawn is in the left half, between 5 and
-// 15.
+// Other threads query the object itself while its pool draws and clears. Everything drawn is in the left half, between
+// 5 and 15 away.
 void QueriesAtTheObject()
 {
     std::vector<Wall> walls;
@@ -379,7 +379,7 @@ void QueriesAtTheObject()
     CHECK(hidden > 0);
 }
 
-// While work is in flight, calls that would change or copy the object's buffer are refused in C and wait in C++.
+// While work is in flight, calls that would change or copy the object's buffer are rejected in C and wait in C++.
 void DirectUseOfABusyObject()
 {
     Setup s(0); // without worker threads nothing is drawn until a call does the work
@@ -407,7 +407,7 @@ void DirectUseOfABusyObject()
     CHECK_EQ(MOC_Flush(other), MOC_STATUS_OK);
     CHECK_EQ(MOC_Flush(nullptr), MOC_STATUS_NULL_POINTER);
 
-    // The same pixels as from one thread, whether calls go through the pool or directly to the object.
+    // The same pixels as with one thread, whether calls go through the pool or directly to the object.
     const auto direct = [&](MOC *moc) { moc->RenderTriangles(near.vertices, QUAD, 2, nullptr, MOC::BACKFACE_NONE); };
     submit();
     direct(s.moc);

@@ -1,5 +1,5 @@
-// Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, the engine's jobs do
-// the pool's work, and worker threads have names and run a callback when they start.
+// Pools and an engine's own threads: matrix and layout belong to the thread that sets them or to the call, the engine's
+// jobs do the pool's work, and worker threads have names and run a callback when they start.
 #include "check.h"
 #include "deadline.h"
 
@@ -45,7 +45,8 @@ std::vector<float> Depth(const MOC *moc)
     return depth;
 }
 
-// Two threads test concurrently, one in front of the wall, one behind it: neither is ever tested with the other's matrix.
+// Two threads test concurrently, one in front of the wall and one behind it: neither is ever tested with the other's
+// matrix.
 void EachThreadItsMatrix()
 {
     MOC *moc = Make();
@@ -73,7 +74,7 @@ void EachThreadItsMatrix()
         other.join();
         CHECK_EQ(behind, 0);
     }
-    // One thread may set up and another draw; pools do not share.
+    // One thread may set up and another draw; pools share no state.
     Pool second(0, 1, 1);
     MOC *empty = Make();
     second.SetBuffer(empty);
@@ -93,8 +94,8 @@ void EachThreadItsMatrix()
     MOC::Destroy(empty);
 }
 
-// The calls that take matrix and layout, with and without the length of the vertices: the same pixels as the same calls on an
-// object.
+// The calls that take matrix and layout, with and without the length of the vertices: the same pixels as from the same
+// calls on an object.
 void CallsWithTheirMatrix()
 {
     MOC *one = Make(), *many = Make();
@@ -233,7 +234,7 @@ extern "C" void Start(void *user, uint32_t number)
 #endif
 }
 
-// How many threads there are, what they are called, and that each runs the callback when it starts.
+// The number of threads, their names, and that each runs the callback when it starts.
 void Threads()
 {
     for (unsigned int threads : {0u, 1u, 3u}) {

@@ -1,6 +1,6 @@
 /* 32-bit programs may leave the x87 unit at single precision, as Direct3D 9 does by default. The library must draw the same
- * bits: it computes in SSE registers, and whatever passes through the x87 unit is exact there. Small triangles, clipped ones,
- * and triangles so large that 128-bit integers decide. */
+ * bits: it computes in SSE registers, and anything that passes through the x87 unit is exact there. Small triangles, clipped
+ * ones, and triangles so large that their edges need 128-bit integers. */
 #define _DEFAULT_SOURCE 1
 #include "guarded_object.h"
 

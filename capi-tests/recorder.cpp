@@ -1,5 +1,5 @@
-// The frame recorder through its C++ classes: a frame that is recorded is loaded and played again with the same
-// answers and pixels, and so are calls that were recorded by hand. Files that are cut, broken or missing are refused.
+// The frame recorder through its C++ classes: a recorded frame is loaded and replayed with the same answers and pixels,
+// and so are calls recorded by hand. Truncated, corrupt or missing files are rejected.
 #define MOC_RECORDER_ENABLE 1
 #define MOC_RECORDER_ENABLE_PLAYBACK 1
 #include "FrameRecorder.h"
@@ -32,7 +32,7 @@ std::vector<float> Depths(const MOC &moc)
     return depths;
 }
 
-// Plays a recording as engines do; how many answers differ from those recorded.
+// Replays a recording as engines do; returns how many answers differ from those recorded.
 int Play(MOC &moc, const FrameRecording &recording)
 {
     int differ = 0;
@@ -88,7 +88,7 @@ void RecordAndPlay()
     CHECK(!moc->RecorderStart(nullptr));
     CHECK(moc->RecorderStart(FILE_NAME));
     CHECK(!moc->RecorderStart(FILE_NAME));
-    // Before the first call the file's header waits for what is set.
+    // The file's header is not written before the first call, so the settings can still change.
     moc->SetNearClipPlane(0.25f);
     moc->ClearBuffer();
     float vertices[16];
@@ -100,7 +100,7 @@ void RecordAndPlay()
     CHECK_EQ(moc->TestTriangles(positions, QUAD, 2, Z_TO_W, MOC::BACKFACE_CW, MOC::CLIP_PLANE_NEAR,
                                 MOC::VertexLayout(12, 4, 8)),
              MOC::OCCLUDED);
-    // Refused, and so not recorded.
+    // Rejected, and therefore not recorded.
     moc->RenderTriangles(vertices, QUAD, -1);
     moc->RecordRenderTriangles(positions, QUAD, 1, Z_TO_W, MOC::CLIP_PLANE_SIDES, MOC::BACKFACE_CCW,
                                MOC::VertexLayout(12, 4, 8));
@@ -122,14 +122,14 @@ void RecordAndPlay()
     CHECK_EQ(recording.mTriangleEntries[2].mCullingResult, -1);
     CHECK_EQ(recording.mTriangleEntries[2].mbfWinding, MOC::BACKFACE_CCW);
     CHECK_EQ(recording.mTriangleEntries[2].mClipPlaneMask, MOC::CLIP_PLANE_SIDES);
-    // Of a quad's vertices one triangle needs three.
+    // Of a quad's vertices, one triangle uses three.
     CHECK_EQ(recording.mTriangleEntries[2].mVertices.size(), 9);
 
     MOC *again = MOC::Create();
     CHECK_EQ(Play(*again, recording), 0);
     CHECK_EQ(again->TestRect(-0.1f, -0.1f, 0.1f, 0.1f, 5.0f), MOC::OCCLUDED);
 
-    // The same of the copy that playing it makes.
+    // The same for the copy that is recorded while it is replayed.
     CHECK(again->RecorderStart(FILE_NAME));
     CHECK_EQ(Play(*again, recording), 0);
     again->RecorderStop();
@@ -196,7 +196,7 @@ void Refused()
     info.size = sizeof(info);
     CHECK_EQ(MOC_RecordingGetInfo(loaded, &info), MOC_STATUS_OK);
     CHECK(info.num_calls > 0);
-    // The calls, made again, give the answers that were recorded.
+    // Repeating the calls gives the recorded answers.
     MOC *again = MOC::Create();
     again->SetResolution(info.width, info.height);
     again->SetNearClipPlane(info.near_clip_plane);
@@ -223,7 +223,7 @@ void Refused()
     CHECK_EQ(MOC_RecordingDestroy(nullptr), MOC_STATUS_OK);
     for (size_t size = 0; size < bytes.size(); size += 1 + size / 64)
     {
-        // Exactly as long, so that a read behind it is seen.
+        // Allocated to exactly this length, so that any read past the end is detected.
         const std::vector<unsigned char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
         CHECK_EQ(MOC_RecordingFromMemory(cut.data(), size, &loaded), MOC_STATUS_INVALID_RECORDING);
         CHECK(loaded == nullptr);
@@ -299,7 +299,7 @@ void NamesBeyondAscii()
 #ifdef __linux__
         CHECK_EQ(status, MOC_STATUS_OK);
 #endif
-        // Other systems may refuse such names.
+        // Other systems may reject such names.
         if (status == MOC_STATUS_OK)
         {
             moc->ClearBuffer();

@@ -1,4 +1,4 @@
-// What the statistics count, to the number: triangles drawn, binned, drawn from lists and tested.
+// The exact counts of the statistics: triangles drawn, binned, drawn from lists and tested.
 #define ENABLE_STATS 1
 #include "check.h"
 
@@ -23,8 +23,8 @@ void Occluders(MOC *moc)
     MOC::OcclusionCullingStatistics stats = moc->GetStatistics();
     CHECK_EQ(stats.mOccluders.mNumProcessedTriangles, 2);
     CHECK_EQ(stats.mOccluders.mNumRasterizedTriangles, 2);
-    CHECK_EQ(stats.mOccluders.mNumTilesTraversed, 2 * 16); // the box of each half is the screen
-    CHECK_EQ(stats.mOccluders.mNumTilesUpdated, 2 * 12);   // each half lies in all tiles but four
+    CHECK_EQ(stats.mOccluders.mNumTilesTraversed, 2 * 16); // the bounds of each half are the screen
+    CHECK_EQ(stats.mOccluders.mNumTilesUpdated, 2 * 12);   // each half is in all tiles but four
 
     // Binned, both into both bins: nothing is traversed.
     std::vector<float> left(9 * 4), right(9 * 4);
@@ -49,12 +49,12 @@ void Occluders(MOC *moc)
     CHECK_EQ(stats.mOccluders.mNumTilesUpdated, 24 + 24);
     CHECK_EQ(moc->GetNumDroppedTriangles(), 0);
 
-    // A rectangle that is refused counts nothing.
+    // A rejected rectangle counts nothing.
     const MOC::ScissorRect odd(1, 0, 32, 64);
     moc->RenderTrilist(lists[0], &odd);
     CHECK_EQ(moc->GetStatistics().mOccluders.mNumProcessedTriangles, 8);
 
-    // Submitted, but facing away, off screen, or not a number.
+    // Submitted, but back-facing, off screen, or NaN.
     const unsigned int back[3] = {0, 2, 1};
     CHECK(moc->RenderTriangles(wall, back, 1) == MOC::VIEW_CULLED);
     float outside[16];
@@ -62,7 +62,7 @@ void Occluders(MOC *moc)
     CHECK(moc->RenderTriangles(outside, QUAD, 2) == MOC::VIEW_CULLED);
     float broken[16];
     quad_at(broken, -1, -1, 1, 1, 10);
-    broken[8] = std::numeric_limits<float>::quiet_NaN(); // of a corner of both triangles
+    broken[8] = std::numeric_limits<float>::quiet_NaN(); // in a corner of both triangles
     moc->RenderTriangles(broken, QUAD, 2);
     stats = moc->GetStatistics();
     CHECK_EQ(stats.mOccluders.mNumProcessedTriangles, 8 + 1 + 2 + 2);
@@ -81,9 +81,9 @@ void Occludees(MOC *moc)
     CHECK_EQ(stats.mOccludees.mNumProcessedRectangles, 1);
     CHECK_EQ(stats.mOccludees.mNumProcessedTriangles, 2);
     CHECK_EQ(stats.mOccludees.mNumRasterizedTriangles, 2);
-    CHECK_EQ(stats.mOccludees.mNumTilesTraversed, 2 * 16); // the box of each half is the screen
+    CHECK_EQ(stats.mOccludees.mNumTilesTraversed, 2 * 16); // the bounds of each half are the screen
 
-    // The first is visible, in the first tile: the second counts as submitted only.
+    // The first triangle is visible, in the first tile: the second only counts as submitted.
     quad_at(quad, -1, -1, 1, 1, 5);
     const unsigned int top_left_first[6] = {0, 2, 3, 0, 1, 2};
     CHECK(moc->TestTriangles(quad, top_left_first, 2) == MOC::VISIBLE);
@@ -92,7 +92,7 @@ void Occludees(MOC *moc)
     CHECK_EQ(stats.mOccludees.mNumRasterizedTriangles, 2 + 1);
     CHECK_EQ(stats.mOccludees.mNumTilesTraversed, 32 + 16);
 
-    // So is what lies at the depth of the wall.
+    // So is one at the depth of the wall.
     quad_at(quad, -1, -1, 1, 1, 10);
     CHECK(moc->TestTriangles(quad, QUAD, 2) == MOC::VISIBLE);
     CHECK(moc->TestRect(-0.5f, -0.5f, 0.5f, 0.5f, 10) == MOC::VISIBLE);

@@ -48,7 +48,7 @@ int main()
     CHECK(copied.merged == stats.mOccluders.mNumTilesMerged);
     CHECK(copied.tested_traversed == stats.mOccludees.mNumTilesTraversed && copied.tested_traversed > 0);
 
-    // The C struct has the same counts behind its size.
+    // The C struct has the same counts after its size.
     MOC_Statistics counted = {};
     counted.size = sizeof(counted);
     CHECK_EQ(MOC_GetStatistics(moc, &counted), MOC_STATUS_OK);

@@ -1,4 +1,4 @@
-// What each translation unit of the `switches` program reports of the object that its switches made.
+// What each translation unit of the `switches` program reports about the object created with its switches.
 #pragma once
 
 #include <stdint.h>

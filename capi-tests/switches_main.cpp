@@ -1,4 +1,4 @@
-// Translation units with different switches in one program: each gets what it asked for.
+// Translation units with different switches in one program: each gets the settings that it requested.
 #include "switches.h"
 #include "switches_report.inl"
 

@@ -1,4 +1,4 @@
-// The same source in every translation unit, so that an inline function shared between them would be found out.
+// The same source in every translation unit, so that sharing an inline function between them would be detected.
 #include "MaskedOcclusionCulling.h"
 #include "check.h"
 

@@ -1,5 +1,5 @@
-// What programs of the library that ours stands in for rely on without saying so: what its headers include, enumerations
-// that a switch can exhaust, a processor that flushes denormal numbers, and a pool that is made for no threads.
+// What programs written for Intel's library rely on implicitly: the headers that its headers include, enumerations that
+// a switch can exhaust, a processor that flushes denormals, and a pool created with no threads.
 #include "CullingThreadpool.h"
 
 #include "check.h"
@@ -25,7 +25,7 @@ struct ClipspaceVertex
     float x, y, z, w;
 };
 
-// All of these compile with warnings as errors only where the enumerations have these values and no more.
+// With warnings as errors, this only compiles if the enumerations have exactly these values.
 const char *Name(MOC::Implementation implementation)
 {
     switch (implementation) {
@@ -59,7 +59,7 @@ const char *Name(MOC::BackfaceWinding winding)
 
 void Enumerations(MOC *moc)
 {
-    // Those that were added are of the type, and can be referred to, before C++17 too.
+    // The added ones have the enumeration's type and can be bound to references, even before C++17.
     const MOC::Implementation &scalar = MOC::SCALAR, &neon = MOC::NEON, &simd128 = MOC::SIMD128;
     CHECK_EQ(scalar, MOC_SCALAR);
     CHECK_EQ(neon, MOC_NEON);
@@ -69,8 +69,8 @@ void Enumerations(MOC *moc)
     CHECK(strcmp(Name(MOC::VIEW_CULLED), "out of view") == 0 && strcmp(Name(MOC::BACKFACE_CW), "clockwise") == 0);
 }
 
-// A triangle across the near plane and the sides, one of the other winding, a quad of which it is said that nothing of
-// it is outside, and a triangle whose coordinates lie apart.
+// A triangle across the near plane and the sides, one with the other winding, a quad that is declared to be inside all
+// planes, and a triangle whose coordinates are in separate arrays.
 void Draw(MOC *moc)
 {
     const unsigned int tri[] = {0, 1, 2}, quad[] = {0, 1, 2, 0, 2, 3};
@@ -102,7 +102,7 @@ std::vector<float> Example(MOC *moc)
     const unsigned int tri[] = {0, 1, 2};
     CHECK(moc->TestTriangles((const float *)behind, tri, 1) == MOC::VISIBLE);
     moc->RenderTriangles((const float *)behind, tri, 1);
-    CHECK(moc->TestTriangles((const float *)behind, tri, 1) == MOC::VISIBLE); // what was drawn does not hide itself
+    CHECK(moc->TestTriangles((const float *)behind, tri, 1) == MOC::VISIBLE); // contents do not hide themselves
     CHECK(moc->TestRect(-0.6f, -0.6f, -0.4f, -0.5f, 150) == MOC::OCCLUDED);
 
     std::vector<float> depth(WIDTH * HEIGHT);
@@ -110,13 +110,13 @@ std::vector<float> Example(MOC *moc)
     CHECK(At(depth, 0.8f, 0.1f) > 0.0f);    // across the near plane
     CHECK(At(depth, 0.72f, -0.72f) > 0.0f); // the clockwise one
     CHECK(At(depth, -0.5f, -0.5f) > 0.0f);  // the quad
-    CHECK(At(depth, 0.95f, -0.95f) > 0.0f); // the one whose coordinates lie apart
+    CHECK(At(depth, 0.95f, -0.95f) > 0.0f); // the one with separate arrays
     CHECK(At(depth, 0.0f, 0.1f) > 0.0f && At(depth, 0.0f, 0.1f) <= 0.005f);
     CHECK(At(depth, -0.9f, 0.9f) < 0.0f && At(depth, 0.0f, -0.9f) < 0.0f);
     return depth;
 }
 
-// Programs set it for the rest of their lives before anything else. The bits do not depend on it.
+// Programs set it at startup for their whole lifetime. The bits do not depend on it.
 void FlushingDenormals(MOC *moc)
 {
     const std::vector<float> before = Example(moc);
@@ -124,13 +124,13 @@ void FlushingDenormals(MOC *moc)
     const unsigned int mode = _mm_getcsr();
     _mm_setcsr(mode | 0x8040);
     CHECK(Example(moc) == before);
-    CHECK_EQ(_mm_getcsr() & 0x8040, 0x8040); // and the library leaves it so
+    CHECK_EQ(_mm_getcsr() & 0x8040, 0x8040); // and the library preserves it
     _mm_setcsr(mode);
 #endif
 }
 
-// As a benchmark has it: as many threads as processors less one, as many rows of bins, and what it has drawn so far in
-// the object. The object is never destroyed through the pool.
+// As in a benchmark: as many threads as processors less one, as many rows of bins, and the object may already have
+// contents. The object is never destroyed through the pool.
 void PoolOf(MOC *moc, unsigned int threads)
 {
     enum { N = 3000 };
@@ -154,7 +154,7 @@ void PoolOf(MOC *moc, unsigned int threads)
     pool.SuspendThreads();
 }
 
-// The header of the pool always had these with it, and programs use them without an include of their own.
+// The pool's header always included these, and programs use them without an include of their own.
 unsigned int Processors()
 {
     std::mutex mutex;

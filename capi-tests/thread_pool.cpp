@@ -1,6 +1,6 @@
-// The pool of threads through its C++ class: the same pixels as from one thread, whoever submits, sleeps, clears or
-// resizes when, and no call that hangs. These are defects 12 (columns and rows lost where the size is not a multiple of
-// the tile) and 13 (races, lost work, hangs) of the library that ours stands in for.
+// The thread pool through its C++ class: the same pixels as from one thread, whichever thread submits, sleeps, clears
+// or resizes and when, and no call that hangs. These are defects 12 (columns and rows lost if the size is not a
+// multiple of the tile) and 13 (races, lost work, hangs) of Intel's library.
 #include "check.h"
 #include "deadline.h"
 
@@ -45,7 +45,7 @@ struct Mesh
     std::vector<float> vertices;
     std::vector<unsigned int> indices;
 
-    // Triangles all around and beyond the view.
+    // Triangles all around the view and beyond it.
     Mesh(int triangles, uint32_t seed) : vertices(12 * triangles), indices(3 * triangles)
     {
         random_triangles(vertices.data(), indices.data(), triangles, seed);
@@ -65,7 +65,7 @@ template <class Target> void Draw(Target &target, const Mesh &mesh)
     target.RenderTriangles(mesh.vertices.data(), mesh.indices.data(), mesh.Triangles(), MOC::BACKFACE_NONE);
 }
 
-// The methods of a pool, on one object and in the thread that calls: what the pool is compared with.
+// The methods of a pool, on one object and in the calling thread: the reference for the pool.
 class Direct
 {
 public:
@@ -129,7 +129,7 @@ struct Size
     unsigned int width, height;
 };
 
-// Every number of threads and bins, at sizes that are no multiples of anything. The far wall covers every pixel.
+// Every number of threads and bins, at sizes that are not multiples of anything. The far wall covers every pixel.
 void SameAsOneThread()
 {
     const Mesh wall(-2, -2, 2, 2, 30), many(2500, 1), few(100, 2);
@@ -165,7 +165,7 @@ void SameAsOneThread()
                 CullingThreadpool pool(t, b[0], b[1], 32, t + 1);
                 pool.SetBuffer(moc);
                 pool.WakeThreads();
-                // The second frame is the one that counts: nothing of the first may be left.
+                // The second frame is the one that counts: nothing of the first may remain.
                 frame(many, few, few, nullptr, &pool);
                 pool.ClearBuffer();
                 frame(few, wall, many, nullptr, &pool);
@@ -179,7 +179,7 @@ void SameAsOneThread()
     }
 }
 
-// What the random calls draw.
+// The data that the random calls draw.
 struct Props
 {
     std::vector<Mesh> meshes;
@@ -204,8 +204,8 @@ struct Props
     }
 };
 
-// Small jobs with another matrix each, and now and then a clear, a size, a near plane, a merge, a rest. Matrices are
-// overwritten as soon as they are set.
+// Small jobs, each with another matrix, and now and then a clear, a resize, a near plane, a merge, a pause. Matrices
+// are overwritten as soon as they are set.
 template <class Target>
 std::vector<std::vector<float>> RandomCalls(Target &target, MOC *moc, const Props &props, uint32_t seed)
 {
@@ -221,7 +221,7 @@ std::vector<std::vector<float>> RandomCalls(Target &target, MOC *moc, const Prop
             target.SetMatrix();
             target.SetVertexLayout();
         } else {
-            // The fourth float of a vertex is read as z, and comes out as w.
+            // The fourth float of a vertex is read as z, and becomes w.
             const float moved[16] = {scale, 0, 0, 0, 0, scale, 0, 0, shift[0], shift[1], 0, 1, 0, 0, 0, 0};
             matrix.assign(moved, moved + 16);
             target.SetMatrix(matrix.data());
@@ -237,7 +237,7 @@ std::vector<std::vector<float>> RandomCalls(Target &target, MOC *moc, const Prop
         else if (kind < 9)
             target.SetResolution(sizes[call % 5].width, sizes[call % 5].height);
         else if (kind < 12)
-            target.MergeBuffers(props.others.data(), 2); // refused at other sizes
+            target.MergeBuffers(props.others.data(), 2); // rejected for other sizes
         else if (kind < 14)
             target.Flush();
         else if (kind < 16)
@@ -280,7 +280,7 @@ void SmallJobs()
     }
 }
 
-// Destroyed while awake, while suspended, never woken, and with nothing to do: what was submitted is drawn.
+// Destroyed while awake, while suspended, never woken, and with nothing to do: everything submitted is drawn.
 void Destroyed()
 {
     enum { CALLS = 30 };
@@ -314,7 +314,8 @@ void Destroyed()
     MOC::Destroy(one);
 }
 
-// Threads that are woken twice, suspended twice, flushed while suspended or with nothing to do, and more than bins.
+// Threads that are woken twice, suspended twice, flushed while suspended or with nothing to do, and more threads than
+// bins.
 void SleepAndWake()
 {
     const Mesh mesh(300, 6), one_triangle(1, 8);
@@ -342,7 +343,7 @@ void SleepAndWake()
         pool.WakeThreads();
         draws();
         flushed();
-        for (int i = 0; i < 50; i++) { // few triangles and at once a flush
+        for (int i = 0; i < 50; i++) { // a few triangles, then a flush at once
             Draw(direct, one_triangle);
             Draw(pool, one_triangle);
             pool.Flush();
@@ -391,7 +392,7 @@ void SleepAndWake()
     MOC::Destroy(moc);
 }
 
-// What was drawn before a clear hides nothing as soon as ClearBuffer is back, drawn or not.
+// When ClearBuffer returns, earlier contents hide nothing, whether or not the clear has been performed.
 void AfterClear()
 {
     const Mesh wall(-2, -2, 2, 2, 10), left(-2, -2, 0, 2, 10), behind(0.2f, -0.4f, 0.6f, 0.4f, 20), noise(400, 9);
@@ -406,7 +407,7 @@ void AfterClear()
         };
         for (int round = 0; round < 60; round++) {
             if (round % 3 == 0)
-                pool.SuspendThreads(); // the clear is not done before the flush
+                pool.SuspendThreads(); // the clear is not performed before the flush
             else
                 pool.WakeThreads();
             Draw(pool, wall);
@@ -433,8 +434,8 @@ void AfterClear()
     }
 }
 
-// Three threads ask while another one submits and clears: each answer is one that some moment allows. All that is drawn
-// is in the left half, between 5 and 15.
+// Three threads query while another one submits and clears: each answer must be valid at some moment. Everything drawn
+// is in the left half, between 5 and 15 away.
 void QueriesMeanwhile()
 {
     enum { ASKING = 3, FRAMES = 60, CALLS = 20 };
@@ -512,8 +513,8 @@ void QueriesMeanwhile()
     MOC::Destroy(many);
 }
 
-// Two threads submit at once. In whichever order their calls arrive, the pixels are the same: both draw the same
-// triangles, or each has half of the screen, which no tile crosses.
+// Two threads submit concurrently. In whichever order their calls arrive, the pixels are the same: both draw the same
+// triangles, or each has one half of the screen, and no tile crosses the boundary.
 void TwoSubmit()
 {
     enum { CALLS = 40 };
@@ -552,8 +553,8 @@ void TwoSubmit()
     }
 }
 
-// Without an object, with one that has no resolution, with another one while work is in flight, and with one whose
-// owner gave it another resolution.
+// Without an object, with one that has no resolution, with a new one while work is in flight, and with one whose owner
+// changed its resolution.
 void Buffers()
 {
     const Mesh mesh(300, 14);
@@ -603,11 +604,11 @@ void Buffers()
         Draw(direct, mesh);
         Draw(pool, mesh);
         CHECK(Same(Depth(pool, first), Depth(one)));
-        // Refused: the old size stays, with what is in it.
+        // Rejected: the old size and contents stay.
         pool.SetResolution(0, 5);
         pool.SetResolution(5, 16385);
         CHECK(Same(Depth(pool, first), Depth(one)));
-        // Given anew: cleared, with work in flight.
+        // Set to the same size: cleared, with work in flight.
         Draw(pool, mesh);
         pool.SetResolution(size.width, size.height);
         one->ClearBuffer();
@@ -619,7 +620,7 @@ void Buffers()
     MOC::Destroy(one);
 }
 
-// Arguments that are refused, through the class and with statuses: nothing is drawn, and the pool goes on.
+// Invalid arguments, through the class and with statuses: nothing is drawn, and the pool keeps working.
 void Refused()
 {
     const Mesh wall(-2, -2, 2, 2, 10);

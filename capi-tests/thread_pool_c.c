@@ -1,4 +1,4 @@
-/* The pool's functions and MOC_MergeBuffers from C: each with right arguments and with wrong ones. */
+/* The pool's functions and MOC_MergeBuffers from C: each with valid arguments and with invalid ones. */
 #include "check.h"
 #include "masked_occlusion_culling.h"
 
@@ -34,7 +34,7 @@ static void draw(MaskedOcclusionCulling *moc, uint32_t seed)
     OK(MOC_RenderTriangles(moc, vertices, indices, N, NULL, REST, NULL, NULL));
 }
 
-/* The pixels of both are the same. */
+/* Both have the same pixels. */
 static void same(const MaskedOcclusionCulling *a, const MaskedOcclusionCulling *b)
 {
     OK(MOC_ComputePixelDepthBuffer(a, expected, 0));
@@ -58,7 +58,7 @@ static void merge(int32_t rule)
         others[i] = made[i] = make((rule + i) % 4);
         draw(made[i], (uint32_t)i);
     }
-    others[OTHERS] = others[0]; /* once more */
+    others[OTHERS] = others[0]; /* the same again */
     OK(MOC_ThreadpoolCreate(2, 2, 2, 4, 0, &pool));
     OK(MOC_ThreadpoolSetBuffer(pool, pooled));
     OK(MOC_ThreadpoolWakeThreads(pool));
@@ -70,7 +70,7 @@ static void merge(int32_t rule)
     same(one, all);
     same(one, pooled);
 
-    /* Refused, or of no effect. */
+    /* Rejected, or without effect. */
     OK(MOC_MergeBuffers(all, NULL, 0));
     OK(MOC_ThreadpoolMergeBuffers(pool, NULL, 0));
     IS_NULL(MOC_MergeBuffers(all, NULL, 1));
@@ -87,7 +87,7 @@ static void merge(int32_t rule)
     HAS_NONE(MOC_MergeBuffers(all, others, 2));
     HAS_NONE(MOC_MergeBuffers(bare, others, 1));
     HAS_NONE(MOC_ThreadpoolMergeBuffers(pool, others, 2));
-    /* With itself changes nothing. */
+    /* Merging with itself changes nothing. */
     others[0] = all;
     others[1] = all;
     OK(MOC_MergeBuffers(all, others, 2));
@@ -108,7 +108,7 @@ static void merge(int32_t rule)
     OK(MOC_Destroy(one));
 }
 
-/* Draws or tests. A test that is refused answers that it is visible. */
+/* Draws or tests. A rejected test answers VISIBLE. */
 static MOC_Status call(const MOC_Threadpool *pool, int32_t test, const float *v, const uint32_t *t, int32_t n,
                        int32_t winding, int32_t planes)
 {
@@ -122,7 +122,7 @@ static MOC_Status call(const MOC_Threadpool *pool, int32_t test, const float *v,
     return status;
 }
 
-/* Every function: first on no pool, then with other arguments that are wrong, then right. */
+/* Every function: first without a pool, then with other invalid arguments, then with valid ones. */
 static void every_function(void)
 {
     const MOC_VertexLayout layout = {16, 4, 12}, negative = {-16, 4, 12};
@@ -177,7 +177,7 @@ static void every_function(void)
     CHECK_EQ(r, MOC_VISIBLE);
     OK(MOC_ThreadpoolFlush(pool));
 
-    /* An object, and arguments that are refused. */
+    /* An object, and invalid arguments. */
     OK(MOC_ThreadpoolSetBuffer(pool, moc));
     OK(MOC_ThreadpoolWakeThreads(pool));
     CHECK_EQ(MOC_ThreadpoolSetResolution(pool, 0, H), MOC_STATUS_INVALID_SIZE);

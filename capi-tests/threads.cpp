@@ -1,4 +1,4 @@
-// Several threads bin and draw one object, and query it, at once: the same bits and answers as with one.
+// Several threads bin, draw and query one object concurrently: the same bits and answers as with one thread.
 #include "check.h"
 
 #include "MaskedOcclusionCulling.h"
@@ -42,7 +42,7 @@ std::vector<float> Depth(const MOC *moc)
 
 void DrawBinned(MOC *moc, const Scene &scene)
 {
-    // A triangle may be clipped into a few, hence the room.
+    // Room for more, because clipping may turn a triangle into a few.
     const unsigned int room = 4 * PER_CHUNK;
     std::vector<float> storage(static_cast<size_t>(CHUNKS) * BINS * room * 9);
     std::vector<MOC::TriList> lists(CHUNKS * BINS);
@@ -94,7 +94,7 @@ void Run(int32_t implementation, int32_t rule, const Scene &scene)
     CHECK(covered > W * H / 2);
     CHECK(Depth(many) == expected);
 
-    // Queries from all threads at once, against one thread's answers.
+    // Queries from all threads concurrently, compared with one thread's answers.
     enum { QUERIES = 2000 };
     std::vector<int> answers(QUERIES), again(QUERIES);
     const auto ask = [&](const MOC *moc, int i) {

@@ -12,7 +12,7 @@ namespace
 
 typedef MaskedOcclusionCulling MOC;
 
-// An exception type of the program's own, with a member that must be freed.
+// The program's own exception type, with a member that must be freed.
 struct Denied
 {
     std::string why;
@@ -20,7 +20,7 @@ struct Denied
 
 int balance = 0;   // blocks not yet freed
 int allowed = -1;  // allocations left before one fails; negative: unlimited
-bool own = false;  // then throw Denied instead of std::bad_alloc
+bool own = false;  // throw Denied instead of std::bad_alloc
 bool quiet = false; // return null instead of throwing
 
 void *Alloc(size_t alignment, size_t size)
@@ -49,7 +49,7 @@ void Free(void *ptr)
     }
 }
 
-// What an action throws: 0 nothing, 1 std::bad_alloc, 2 Denied.
+// The type of exception that an action throws: 0 none, 1 std::bad_alloc, 2 Denied.
 template <class Action> int Thrown(Action action)
 {
     try {
@@ -130,7 +130,7 @@ void SetResolutionThrows()
         CHECK_EQ(balance, with_buffer);
     }
 
-    // A C function cannot throw, and an exception it swallowed is not rethrown later.
+    // A C function cannot throw, and an exception swallowed there is not rethrown later.
     allowed = 0;
     CHECK_EQ(MOC_SetResolution(moc, 640, 400), MOC_STATUS_OUT_OF_MEMORY);
     allowed = -1;

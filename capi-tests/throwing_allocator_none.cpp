@@ -1,4 +1,4 @@
-// A unit compiled as with -fno-exceptions, in a program that uses exceptions elsewhere.
+// A unit compiled as if with -fno-exceptions, in a program that uses exceptions elsewhere.
 #define MOC_DETAIL_EXCEPTIONS 0
 #include "throwing_allocator.h"
 

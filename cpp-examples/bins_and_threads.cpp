@@ -1,4 +1,4 @@
-// Drawing on several threads: one pass sorts triangles into bins of the screen, then each thread draws bins of its own.
+// Drawing with several threads: one pass sorts triangles into bins of the screen, then each thread draws its own bins.
 // The buffer is the same, to the bit, as when one thread draws everything.
 #include "MaskedOcclusionCulling.h"
 
@@ -16,8 +16,8 @@ static const unsigned kWidth = 1280, kHeight = 720, kBinsW = 4, kBinsH = 2, kBin
 static void DrawBinned(Moc *moc, const std::vector<float> &vertices, const std::vector<unsigned> &indices) {
     const unsigned numTriangles = unsigned(indices.size() / 3);
 
-    // Room for every triangle in every bin, 9 floats each. Clipping can make one triangle two or three, so a real
-    // engine leaves a margin; a list that is full takes no more, which hides less but never wrongly.
+    // Room for every triangle in every bin, 9 floats each. Clipping can turn one triangle into two or three, so a real
+    // engine leaves a margin; a full list takes no more triangles, which hides less but never wrongly.
     const unsigned capacity = numTriangles * 2;
     std::vector<float> memory(size_t(kBins) * capacity * 9);
     Moc::TriList lists[kBins];
@@ -28,7 +28,7 @@ static void DrawBinned(Moc *moc, const std::vector<float> &vertices, const std::
     }
     moc->BinTriangles(vertices.data(), indices.data(), int(numTriangles), lists, kBinsW, kBinsH);
 
-    // Bins are multiples of 32x8 pixels; the last column and row take the rest.
+    // Bin sizes are multiples of 32x8 pixels; the last column and row take the rest.
     unsigned binWidth, binHeight;
     moc->ComputeBinWidthHeight(kBinsW, kBinsH, binWidth, binHeight);
 
@@ -57,7 +57,7 @@ static Moc *NewBuffer() {
 }
 
 int main() {
-    // Triangles strewn in front of the eye, some off screen and some across the near plane.
+    // Triangles scattered in front of the eye, some off screen and some across the near plane.
     std::mt19937 random(1);
     const auto uniform = [&](float lo, float hi) { return lo + (hi - lo) * float(random() % 65536) / 65535.0f; };
     std::vector<float> vertices;

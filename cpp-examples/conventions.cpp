@@ -1,6 +1,6 @@
 // One wall and six boxes through the conventions of OpenGL, Direct3D and Vulkan, and through every vertex layout: the
-// same pixels and the same answers each time. docs/conventions.md quotes from here.
-// The trap below is shown, not stopped.
+// same pixels and the same answers each time. docs/conventions.md quotes from here. The assertion on layouts is off,
+// because the trap below is demonstrated.
 #define MOC_CHECK_LAYOUT 0
 #include "MaskedOcclusionCulling.h"
 
@@ -15,7 +15,8 @@
 typedef MaskedOcclusionCulling Moc;
 typedef std::array<float, 16> Matrix;
 
-// The camera stands at the origin. kX and kY are the scales of x and y (1 / tan of half the angle, x over the aspect).
+// The camera is at the origin. kX and kY are the scales of x and y (1 / tan of half the angle; for x, divided by the
+// aspect).
 static const float kX = 0.5625f, kY = 1.0f, kNear = 0.5f, kFar = 100.0f;
 
 // Column vectors, stored column by column. Right-handed, looks along -z, so w is -z. Depth from -1 to 1.
@@ -38,7 +39,7 @@ static Matrix Direct3D() {
     }};
 }
 
-// Right-handed as OpenGL's, but y points down in clip space, and depth runs from 0 to 1.
+// Right-handed like OpenGL's, but y points down in clip space, and depth runs from 0 to 1.
 static Matrix Vulkan() {
     return {{
         kX, 0, 0, 0,
@@ -148,7 +149,7 @@ static void Say(const std::string &what, bool right, const std::string &answer) 
     failed |= !right;
 }
 
-// The wall, left of the middle and above it, 10 away: where y or x is mirrored by mistake, boxes come out from behind.
+// The wall, above and to the left of the middle, 10 away: if y or x is mirrored by mistake, boxes become visible.
 static const float kWall[4][2] = {{-8, 1}, {1, 1}, {1, 6}, {-8, 6}};
 static const unsigned kCounterClockwise[6] = {0, 1, 2, 0, 2, 3}, kClockwise[6] = {0, 2, 1, 0, 3, 2};
 
@@ -158,11 +159,11 @@ static const Box kBoxes[6] = {
     {{-2, 1, 4}, {-1, 2, 5}},      // in front of it
     {{-4, -4, 14}, {-2, -2, 15}},  // below
     {{2, 2, 14}, {4, 4, 15}},      // to the right
-    {{40, 2, 14}, {42, 4, 15}},    // outside of the view
+    {{40, 2, 14}, {42, 4, 15}},    // outside the view
     {{-1, -1, 0.1f}, {1, 1, 20}},  // through the near plane
 };
 
-// Asks for the boxes in a space that is seen along +z (1) or -z (-1), and compares answers and pixels.
+// Tests the boxes in a space viewed along +z (1) or -z (-1), and compares answers and pixels.
 static void Check(const std::string &what, Moc *moc, const Matrix &toClip, float forward, bool flipRows = false) {
     std::string answers;
     for (Box box : kBoxes) {
@@ -198,7 +199,7 @@ static void Matrices(Moc *moc) {
     draw(right, kCounterClockwise, ReversedInfinite(), Moc::BACKFACE_CW);
     Check("reversed depth, no far plane", moc, ReversedInfinite(), -1);
 
-    const Matrix rowByRow = Transposed(OpenGl());  // what some engines have in memory
+    const Matrix rowByRow = Transposed(OpenGl());  // as some engines store it
     draw(right, kCounterClockwise, Transposed(rowByRow), Moc::BACKFACE_CW);
     Check("column vectors stored row by row", moc, Transposed(rowByRow), -1);
 
@@ -208,7 +209,7 @@ static void Matrices(Moc *moc) {
     const Moc::CullingResult mirrored = draw(right, kCounterClockwise, Vulkan(), Moc::BACKFACE_CW);
     Say("Vulkan's matrix as it is", mirrored == Moc::VIEW_CULLED, Text(mirrored));
 
-    // Fronts are counter-clockwise in the mesh, and the model matrix mirrors it.
+    // Front faces are counter-clockwise in the mesh, and the model matrix mirrors it.
     const Matrix mirror = {{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     std::vector<float> mesh = right;
     for (size_t i = 0; i < mesh.size(); i += 3) mesh[i] = -mesh[i];
@@ -255,7 +256,7 @@ static void Layouts(Moc *moc) {
     Say("x, y, z, 1 with the default layout", lost == Moc::VIEW_CULLED, Text(lost));
 }
 
-// A wall across the view, and a box around the eye: all of its faces are behind the wall, but not what may be inside.
+// A wall across the view, and a box around the eye: all of its faces are behind the wall, but its contents may not be.
 static void AroundTheEye(Moc *moc) {
     const float wall[16] = {-20, -20, 0, 10, 20, -20, 0, 10, 20, 20, 0, 10, -20, 20, 0, 10};
     const Box box = {{-20, -20, -20}, {20, 20, 20}};
@@ -355,7 +356,7 @@ int main() {
     Orthographic(moc);
     Moc::Destroy(moc);
 
-    // What USE_D3D 0 sets. Clip space and rectangles stay as they are; row 0 is the lowest.
+    // As USE_D3D 0 does. Clip space and rectangles are unchanged; row 0 is the bottom row.
     MOC_Settings settings = {};
     settings.size = sizeof(settings);
     MOC_DefaultSettings(&settings);

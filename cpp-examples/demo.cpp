@@ -2,7 +2,7 @@
 //
 //     demo SCENE RESULT [highest instruction set: a number of MaskedOcclusionCulling::Implementation]
 //
-// `cargo run --release -p demo` makes the scene, compiles and runs this program, and draws what it found.
+// `cargo run --release -p demo` creates the scene, compiles and runs this program, and draws its results.
 #include "MaskedOcclusionCulling.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 typedef MaskedOcclusionCulling Moc;
 
-// The scene file, little-endian: the header, then vertices (x, y, z as floats), indices (three a triangle, counted
+// The scene file, little-endian: the header, then vertices (x, y, z as floats), indices (three per triangle, counted
 // from the object's first vertex) and objects.
 struct Header {
     char magic[8];  // "MOCDEMO1"
@@ -41,8 +41,8 @@ struct Scene {
 struct ScreenBox {
     float xmin, ymin, xmax, ymax;  // normalised device coordinates
     float wmin;                    // w of the nearest corner
-    bool outside;                  // of the view
-    bool crossesNear;              // reaches in front of the near plane: it has no rectangle
+    bool outside;                  // outside the view
+    bool crossesNear;              // extends in front of the near plane: it has no rectangle
 };
 
 static ScreenBox ProjectBox(const Object &object, const float *m, float nearPlane) {
@@ -93,7 +93,7 @@ static void CullFrame(const Scene &scene, Moc *moc, Frame &frame) {
         frame.boxes[i] = ProjectBox(objects[i], scene.header.clipFromWorld, scene.header.nearPlane);
     stepDone();
 
-    // Front to back, what is hidden is rejected early.
+    // Front to back, hidden occluders are rejected early.
     frame.occluders.clear();
     for (uint32_t i = 0; i < objects.size(); ++i)
         if ((objects[i].flags & OCCLUDER) && !frame.boxes[i].outside) frame.occluders.push_back(i);
@@ -104,7 +104,7 @@ static void CullFrame(const Scene &scene, Moc *moc, Frame &frame) {
     moc->ClearBuffer();
     stepDone();
 
-    // World-space positions and a matrix: 12 bytes a vertex, y 4 and z 8 bytes from x.
+    // World-space positions and a matrix: 12 bytes per vertex, with y at offset 4 and z at offset 8.
     const Moc::VertexLayout layout(12, 4, 8);
     frame.occluderTriangles = 0;
     for (uint32_t i : frame.occluders) {
@@ -152,7 +152,7 @@ static Scene LoadScene(const char *path) {
     return scene;
 }
 
-// A CullingResult for each object, a byte each; then the depth (1/w) of each pixel, the top row first, as floats.
+// A CullingResult for each object, one byte each; then the depth (1/w) of each pixel, top row first, as floats.
 static void SaveResult(const char *path, const std::vector<uint8_t> &results, const std::vector<float> &depth) {
     std::FILE *file = std::fopen(path, "wb");
     if (!file || std::fwrite(results.data(), 1, results.size(), file) != results.size() ||
@@ -190,7 +190,7 @@ int main(int argc, char **argv) {
     moc->SetResolution(width, height);
     moc->SetNearClipPlane(scene.header.nearPlane);
 
-    // Fewer repeats where a frame takes long.
+    // Fewer repeats if a frame takes long.
     const std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
     Frame frame;
     std::vector<double> times[kNumSteps];
@@ -218,7 +218,7 @@ int main(int argc, char **argv) {
     }
     std::printf("  %-32s %10.3f\n\n", "all", sum);
 
-    // One frame more, with all its calls and answers in a file.
+    // One more frame, with all its calls and answers recorded to a file.
     if (argc > 4) {
         if (!moc->RecorderStart(argv[4])) Fail("cannot record into", argv[4]);
         CullFrame(scene, moc, frame);

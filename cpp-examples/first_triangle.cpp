@@ -20,14 +20,15 @@ int main() {
     moc->SetNearClipPlane(0.1f);
     moc->ClearBuffer();
 
-    // Vertices are in clip space: x, y, z, w, and z is not looked at. On screen is what has -w <= x <= w and
-    // -w <= y <= w, and w is the distance from the eye. This triangle stands 5 away and covers much of the screen.
+    // Vertices are in clip space: x, y, z, w; z is not read. A point is on screen if -w <= x <= w and -w <= y <= w, and
+    // w is the distance from the eye. This triangle is 5 away and covers much of the screen.
     const float vertices[] = {
         -4.0f, -4.0f, 0.0f, 5.0f,
         4.0f, -4.0f, 0.0f, 5.0f,
         0.0f, 4.0f, 0.0f, 5.0f,
     };
-    // Counter-clockwise on the screen faces the eye; clockwise triangles are skipped unless BACKFACE_NONE is passed.
+    // Triangles that are counter-clockwise on the screen are front-facing; clockwise ones are skipped unless
+    // BACKFACE_NONE is passed.
     const unsigned triangle[] = {0, 1, 2};
     moc->RenderTriangles(vertices, triangle, 1);
 
@@ -37,7 +38,7 @@ int main() {
     std::printf("beside it, 8 away:                 %s\n", Text(moc->TestRect(-0.9f, 0.6f, -0.7f, 0.8f, 8.0f)));
     std::printf("off the screen:                    %s\n", Text(moc->TestRect(1.5f, -0.1f, 1.7f, 0.1f, 8.0f)));
 
-    // Meshes can be tested too. This one lies behind the triangle.
+    // Meshes can be tested too. This one is behind the triangle.
     const float small[] = {
         -0.5f, -0.5f, 0.0f, 6.0f,
         0.5f, -0.5f, 0.0f, 6.0f,

@@ -1,4 +1,4 @@
-/* The C interface: what the C++ class is made of. Every function returns a status. */
+/* The C interface, on which the C++ class is built. Every function returns a status. */
 #include "masked_occlusion_culling.h"
 
 #include <stdio.h>
@@ -33,7 +33,7 @@ int main(void) {
         -4, 4, 0, 5,
     };
     const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-    /* What is not named is null or zero: no matrix, and packed vertices. */
+    /* Fields that are not named are null or zero: no matrix, and packed vertices. */
     MOC_Mesh square = {
         .size = sizeof square,
         .vertices = vertices,
@@ -50,7 +50,7 @@ int main(void) {
     printf("behind the square: %s\n", result == MOC_OCCLUDED ? "occluded" : "visible");
     const int hidden = result == MOC_OCCLUDED;
 
-    /* The number of vertices is known: a bad index is an error, and nothing is drawn. */
+    /* Because the number of vertices is given, an invalid index is an error, and nothing is drawn. */
     const uint32_t bad[] = {0, 1, 4};
     square.indices = bad;
     square.triangle_count = 1;

@@ -1,9 +1,9 @@
-// What an engine that uses Intel's MaskedOcclusionCulling looks like: its own allocator, model matrices, its own vertex
-// struct, and the switches of the original header. Nothing here is new, and nothing has to change: the include path
-// and the library to link are all that does.
+// An engine that uses Intel's MaskedOcclusionCulling: its own allocator, model matrices, its own vertex struct, and the
+// switches of the original header. Nothing here is new; to switch, change only the include path and the library to
+// link.
 
-// QUICK_MASK chose one of two update rules when the original was compiled; it still does, per program. Leave it out
-// for this library's default, which culls more.
+// QUICK_MASK chose one of two update rules when the original was compiled; it still does, per program. Leave it out for
+// this library's default, which culls more.
 #define QUICK_MASK 1
 #include "MaskedOcclusionCulling.h"
 
@@ -15,7 +15,7 @@ namespace engine {
 
 static int liveAllocations = 0;
 
-// The address of the block that malloc gave is kept just in front of the aligned one.
+// The pointer from malloc is stored just in front of the aligned block.
 void *AlignedAlloc(size_t alignment, size_t size) {
     void *block = std::malloc(size + alignment + sizeof(void *));
     if (!block) return nullptr;
@@ -66,8 +66,8 @@ int main() {
     for (const float *corner : corners) wall.vertices.push_back({{0, 0, 1}, {corner[0], corner[1], -10}, {0, 0}});
     wall.indices = {0, 1, 2, 0, 2, 3};
 
-    // Column-major for column vectors (OpenGL), which is the memory of row-major for row vectors (Direct3D). Looks
-    // along -z: w is -z. The third row is not used.
+    // Column-major for column vectors (OpenGL), which has the same memory layout as row-major for row vectors
+    // (Direct3D). Looks along -z, so w is -z. The third row is not used.
     const float modelToClip[16] = {
         1, 0, 0, 0,
         0, 1.78f, 0, 0,

@@ -1,5 +1,5 @@
-// A frame drawn by a pool of threads: calls that draw return at once, Flush waits until all of it is drawn, and then
-// boxes are tested. The buffer is the same, to the bit, as when one thread draws everything.
+// A frame drawn by a thread pool: draw calls return at once, Flush waits until everything is drawn, and then boxes are
+// tested. The buffer is the same, to the bit, as when one thread draws everything.
 #include "CullingThreadpool.h"
 
 #include <atomic>
@@ -25,8 +25,8 @@ struct Box {
     Position centre, half;
 };
 
-// Model to clip of a box, for a camera at the origin that looks along -z. Column-major for column vectors (OpenGL),
-// which is the memory of row-major for row vectors (Direct3D). The third row is not used.
+// The model-to-clip matrix of a box, for a camera at the origin that looks along -z. Column-major for column vectors
+// (OpenGL), which has the same memory layout as row-major for row vectors (Direct3D). The third row is not used.
 static std::vector<float> ModelToClip(const Box &box) {
     const float focal = 1.5f, aspect = 16.0f / 9.0f;
     return {
@@ -41,8 +41,8 @@ int main() {
     Moc *moc = Moc::Create();
     moc->SetResolution(1280, 720);
 
-    // Once: the threads, besides this one, and the pieces of the screen that they share, several for each thread. The
-    // threads sleep until they are woken; an engine suspends them where it has nothing to cull.
+    // Once: the threads, in addition to this one, and the parts of the screen that they share, several per thread. The
+    // threads sleep until they are woken; an engine suspends them while it has nothing to cull.
     const unsigned processors = std::thread::hardware_concurrency();
     CullingThreadpool pool(processors > 1 ? processors - 1 : 1, 4, 4);
     pool.SetBuffer(moc);
@@ -58,16 +58,16 @@ int main() {
     size_t hidden = 0;
     bool behindWall = false, onStreet = false, behindHouses = false;
     for (int frame = 0; frame < 3; ++frame) {
-        // A frame. Matrices are copied; vertices and indices must stay as they are until Flush. With a matrix the
-        // third offset of the layout is that of z.
+        // A frame. Matrices are copied; vertices and indices must not change until Flush. With a matrix the third
+        // offset of the layout is that of z.
         const Moc::VertexLayout layout(sizeof(Position), 4, 8);
         pool.ClearBuffer();
         for (const Box &box : occluders)
             pool.RenderTriangles(&kCorners[0].x, kFaces, 12, ModelToClip(box).data(), Moc::BACKFACE_CW,
                                  Moc::CLIP_PLANE_ALL, layout);
 
-        // Here the engine does something else while the threads draw. What is not drawn yet hides nothing, so that
-        // a test before Flush culls less, but never what can be seen.
+        // Here the engine does something else while the threads draw. Anything not drawn yet hides nothing, so a test
+        // before Flush culls less, but never anything visible.
         pool.Flush();
 
         // Occludees, after the Flush. Any number of threads may test concurrently, each with its own matrices.
@@ -95,7 +95,7 @@ int main() {
     std::printf("behind the houses:    %s\n", behindHouses ? "occluded" : "visible");
     std::printf("of 1000 small boxes:  %zu occluded\n", hidden);
 
-    // The object may go when no pool draws into it any more.
+    // The object may be destroyed once no pool draws into it.
     pool.SetBuffer(nullptr);
     Moc::Destroy(moc);
     return behindWall && !onStreet && behindHouses ? 0 : 1;

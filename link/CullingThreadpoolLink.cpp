@@ -1,11 +1,11 @@
 /*
- * Intel's pool of threads over this library's, for programs whose CullingThreadpool.h cannot change. Compile it in
- * place of CullingThreadpool.cpp, beside MaskedOcclusionCullingLink.cpp, which says how.
+ * Intel's thread pool implemented with this library's, for programs whose CullingThreadpool.h cannot change. Compile it
+ * instead of CullingThreadpool.cpp, together with MaskedOcclusionCullingLink.cpp, which explains how.
  *
- * Their CullingThreadpool.cpp works over the methods of the class and may stay, but its queries then have to wait for
- * Flush: it asks while its threads draw, which RenderTrilist of this library does not permit. It also stays what it was:
- * threads that spin when there is nothing to do, calls in an order that hang, and columns and rows that are lost where
- * the size of the buffer is not a multiple of the tile's.
+ * Intel's CullingThreadpool.cpp uses the methods of the class and may stay, but its queries must then wait for Flush: it
+ * queries while its threads draw, which this library's RenderTrilist does not permit. It also keeps its problems:
+ * threads that spin when there is nothing to do, orders of calls that hang, and columns and rows that are lost if the
+ * size of the buffer is not a multiple of the tile size.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -22,7 +22,7 @@
 
 #include "LinkedObject.h"
 
-// The header's state is not used, but it has to be constructed.
+// The header's state is unused, but it must be constructed.
 template <class T>
 CullingThreadpool::StateData<T>::StateData(unsigned int maxJobs) : mMaxJobs(maxJobs), mCurrentIdx(0), mData(nullptr)
 {
@@ -35,7 +35,7 @@ template <class T> CullingThreadpool::StateData<T>::StateData::~StateData()
 namespace
 {
 
-// The pool lies where the header has a pointer to its queue, of a type that nobody outside can use.
+// The pool is stored where the header has a pointer to its queue, whose type is private.
 template <class Queue> MOC_Threadpool *PoolOf(Queue *queue)
 {
     return reinterpret_cast<MOC_Threadpool *>(queue);
@@ -51,7 +51,7 @@ CullingThreadpool::CullingThreadpool(unsigned int numThreads, unsigned int binsW
 {
     const uint32_t w = binsW != 0 ? binsW : 1, h = binsH != 0 ? binsH : 1, jobs = maxJobs != 0 ? maxJobs : 1;
     MOC_Threadpool *pool = nullptr;
-    // Where the system starts no more threads the pool has none, and Flush does the work.
+    // If the system cannot start threads, the pool has none, and Flush does the work.
     if (MOC_ThreadpoolCreate(numThreads, w, h, jobs, 0, &pool) != MOC_STATUS_OK)
         MOC_ThreadpoolCreate(0, w, h, jobs, 0, &pool);
     mRenderQueue = reinterpret_cast<RenderJobQueue *>(pool);

@@ -1,33 +1,34 @@
 /*
- * Intel's class over this library, for programs whose MaskedOcclusionCulling.h cannot change: object files that were
- * compiled against that header link this file and run, without being compiled again. Whoever can change the include
- * path needs nothing of this; see include/MaskedOcclusionCulling.h.
+ * Intel's class implemented with this library, for programs whose MaskedOcclusionCulling.h cannot change: object files
+ * compiled against that header link with this file and run, without being recompiled. Programs that can change their
+ * include path do not need it; see include/MaskedOcclusionCulling.h.
  *
- * Compile it in place of MaskedOcclusionCulling.cpp, MaskedOcclusionCullingAVX2.cpp and
+ * Compile it instead of MaskedOcclusionCulling.cpp, MaskedOcclusionCullingAVX2.cpp and
  * MaskedOcclusionCullingAVX512.cpp, with the program's own header in the include path, and with the switches that those
  * files were compiled with: they decide, as before, for the whole program. This repository's include folder need not be
  * in the include path, and must not come before the program's. Then link the library.
  *
  *     c++ -I engine/moc -c link/MaskedOcclusionCullingLink.cpp link/CullingThreadpoolLink.cpp
  *
- * CullingThreadpool.cpp is replaced by CullingThreadpoolLink.cpp, which says why. FrameRecorder.cpp stays: with
- * MOC_RECORDER_ENABLE 1 this file calls it, and without it is empty.
+ * CullingThreadpool.cpp is replaced by CullingThreadpoolLink.cpp, which explains why. FrameRecorder.cpp stays: with
+ * MOC_RECORDER_ENABLE 1 this file calls it; otherwise it is empty.
  *
  * QUICK_MASK        1: the update rule of "Masked Software Occlusion Culling"; 0: that of "Masked Depth Culling for
- *                   Graphics Hardware"; not defined: three layers, accurate in nearly any scene and order, unless the
- *                   header was edited to 0.
- * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK says. That header does not know this one.
- * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
- * USE_D3D, ENABLE_STATS and MOC_RECORDER_ENABLE are as the header has them. PRECISE_COVERAGE does not matter: coverage is exact.
+ *                   Graphics Hardware"; not defined: three layers, accurate in nearly every scene and order, unless
+ *                   the header was edited to 0.
+ * MOC_FOUR_LAYERS   1: four layers, regardless of QUICK_MASK. Intel's header does not have this switch.
+ * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 if the processor has it.
+ * USE_D3D, ENABLE_STATS and MOC_RECORDER_ENABLE work as in the header. PRECISE_COVERAGE is ignored: coverage is exact.
  *
- * GetImplementation returns SSE2 for what that header has no name for: scalar code, NEON and simd128.
+ * GetImplementation returns SSE2 for sets that the header does not name: scalar code, NEON and simd128.
  *
  * C++11; nothing here needs run-time type information, and the only exceptions are those of allocation callbacks, rethrown.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
 
-// The program's header defines the first two where nobody asked: what was asked for is to be seen only before it.
+// The program's header defines the first two by default, so whether the program defined them can only be seen before
+// it.
 #ifdef QUICK_MASK
 #define MOC_LINK_RULE_IS_CHOSEN 1
 #else
@@ -47,7 +48,7 @@
 #include <new>
 #include <type_traits>
 
-// That header lacks what declares size_t, so it comes after.
+// That header does not include one that declares size_t, so it comes after.
 #include "MaskedOcclusionCulling.h"
 
 #ifdef MOC_DETAIL_SWITCHES
@@ -65,10 +66,10 @@ namespace
 
 static_assert(std::is_abstract<MaskedOcclusionCulling>::value, "the header of a class whose methods are virtual");
 
-// That of memory from the callbacks: as much as any buffer asks for, so that any callback has seen it.
+// The alignment of memory from the callbacks: that of every buffer, so every callback supports it.
 const size_t ALIGNMENT = 64;
 
-// What Create makes. The compiler takes the order of the methods from the header.
+// The class of the objects that Create returns. The compiler takes the order of the methods from the header.
 class Linked final : public MaskedOcclusionCulling
 {
 public:
@@ -85,7 +86,7 @@ public:
     ~Linked() override
     {
 #if MOC_RECORDER_ENABLE
-        // It must not be called where nothing is recorded.
+        // Must not be called while nothing is recorded.
         if (mRecorder != nullptr)
             RecorderStop();
 #endif
@@ -254,7 +255,7 @@ public:
     }
 
 private:
-    // A call that changes or copies the buffer: waits first for what a pool has in flight for it.
+    // A call that changes or copies the buffer: first waits for the work that a pool has in flight for it.
     template <class Call> void Direct(Call call, const MOC_LinkedObject *other = nullptr) const
     {
         do
@@ -323,7 +324,8 @@ MaskedOcclusionCulling *MaskedOcclusionCulling::Create(Implementation RequestedS
         return nullptr;
     }
 
-    // The object around it comes from where its own memory does: where no callbacks are given, from the library's.
+    // The wrapping object is allocated with the same callbacks as the object; without any, with the library's
+    // allocator.
     MOC_GetAllocFreeCallback(object, &alignedAlloc, &alignedFree);
     void *memory = moc_link::Allocation::Call(alignedAlloc, ALIGNMENT, (sizeof(Linked) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
     if (memory != nullptr && reinterpret_cast<uintptr_t>(memory) % alignof(Linked) == 0)

@@ -6,12 +6,12 @@ use std::alloc::Layout;
 
 use crate::Error;
 
-/// Allocates `size` bytes at a multiple of `alignment`; null when there is no memory.
+/// Allocates `size` bytes at a multiple of `alignment`; returns null if there is no memory.
 pub type AlignedAlloc = unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void;
-/// Frees what [`AlignedAlloc`] gave.
+/// Frees memory from [`AlignedAlloc`].
 pub type AlignedFree = unsafe extern "C" fn(ptr: *mut c_void);
 
-/// Calls an [`AlignedAlloc`] on the library's behalf, when the call must be guarded.
+/// Calls an [`AlignedAlloc`] on the library's behalf if the call must be guarded.
 pub(crate) type CallAlloc =
     unsafe extern "C" fn(alloc: Option<AlignedAlloc>, alignment: usize, size: usize) -> *mut c_void;
 
@@ -26,11 +26,11 @@ impl Allocator {
     /// The system's allocator.
     pub const SYSTEM: Self = Self { callbacks: None, call_alloc: None };
 
-    /// The caller's own.
+    /// The caller's own allocator.
     ///
     /// # Safety
-    /// `alloc` returns null or memory of that size and alignment that is nobody else's until it is
-    /// passed to `free`; both may be called from any thread that uses the object.
+    /// `alloc` returns null, or memory of that size and alignment that nobody else uses until it is passed to `free`;
+    /// both may be called from any thread that uses the object.
     pub const unsafe fn from_callbacks(alloc: AlignedAlloc, free: AlignedFree) -> Self {
         Self { callbacks: Some((alloc, free)), call_alloc: None }
     }
@@ -43,7 +43,7 @@ impl Allocator {
         Self { call_alloc: call, ..self }
     }
 
-    /// The callbacks, where there are any.
+    /// The callbacks, if there are any.
     pub const fn callbacks(&self) -> Option<(AlignedAlloc, AlignedFree)> {
         self.callbacks
     }
@@ -54,14 +54,15 @@ impl Allocator {
         let ptr = match (self.callbacks, self.call_alloc) {
             // SAFETY: the layout is not empty, by the assertion above.
             (None, _) => unsafe { std::alloc::alloc(layout) },
-            // SAFETY: whoever called `from_callbacks` vouched for the callback.
+            // SAFETY: the caller of `from_callbacks` guarantees that the callback is valid.
             (Some((alloc, _)), None) => unsafe { alloc(layout.align(), layout.size()).cast() },
-            // SAFETY: the caller of `called_through` vouched for it.
+            // SAFETY: the caller of `called_through` guarantees that it is valid.
             (Some((alloc, _)), Some(call)) => unsafe { call(Some(alloc), layout.align(), layout.size()).cast() },
         };
         let ptr = NonNull::new(ptr).ok_or(Error::OutOfMemory)?;
         if !(ptr.as_ptr() as usize).is_multiple_of(layout.align()) {
-            // A callback that ignores the alignment gets its memory back; every vector load relies on it.
+            // Memory from a callback that ignores the alignment is returned to it, because every vector load relies on
+            // the alignment.
             // SAFETY: allocated just above with this layout.
             unsafe { self.free(ptr, layout) };
             return Err(Error::OutOfMemory);
@@ -70,7 +71,7 @@ impl Allocator {
     }
 
     /// # Safety
-    /// `ptr` came from `allocate` of the same allocator with the same layout and was not freed yet.
+    /// `ptr` came from `allocate` of the same allocator with the same layout and has not been freed.
     pub(crate) unsafe fn free(&self, ptr: NonNull<u8>, layout: Layout) {
         match self.callbacks {
             // SAFETY: the caller's contract.
@@ -81,30 +82,30 @@ impl Allocator {
     }
 }
 
-/// An array of words, at first zero, at a multiple of 64 bytes, from an [`Allocator`].
+/// An array of words, initially zero, at a multiple of 64 bytes, from an [`Allocator`].
 pub(crate) struct AlignedWords {
     ptr: NonNull<u32>,
     len: usize,
     allocator: Allocator,
 }
 
-// SAFETY: it owns its memory as a Box does; `from_callbacks` asks for callbacks that any thread may call.
+// SAFETY: it owns its memory like a Box; `from_callbacks` requires callbacks that any thread may call.
 unsafe impl Send for AlignedWords {}
-// SAFETY: shared access hands out the pointer only; who writes through it answers for exclusion.
+// SAFETY: shared access only gives out the pointer; code that writes through it is responsible for exclusive access.
 unsafe impl Sync for AlignedWords {}
 
 impl AlignedWords {
     pub fn new(len: usize, allocator: Allocator) -> Result<Self, Error> {
         let ptr: NonNull<u32> = allocator.allocate(Self::layout(len)?)?.cast();
-        // Vectors load whole blocks of which only a part may have been written.
-        // SAFETY: allocated just now for as many words.
+        // Zeroed, because vectors load whole blocks of which only a part may have been written.
+        // SAFETY: allocated just above for that many words.
         unsafe { ptr.write_bytes(0, len) };
         Ok(Self { ptr, len, allocator })
     }
 
     fn layout(len: usize) -> Result<Layout, Error> {
         let bytes = len.checked_mul(4).ok_or(Error::OutOfMemory)?;
-        // A whole number of alignments: a callback may be C11's aligned_alloc, which asks for that.
+        // A multiple of the alignment: a callback may be C11's aligned_alloc, which requires that.
         Ok(Layout::from_size_align(bytes.max(64), 64).map_err(|_| Error::OutOfMemory)?.pad_to_align())
     }
 

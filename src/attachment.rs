@@ -1,9 +1,10 @@
-//! What an object knows about the pool that draws into it.
+//! The link from an object to the pool that draws into it.
 //!
-//! An engine may query an object from any thread while its pool draws, and may draw into it directly while the pool has nothing
-//! in flight. So the object counts in `turns` each time its pool becomes busy or idle. A query reads the buffer without a lock
-//! and keeps its answer if the count has not changed meanwhile; otherwise it asks the pool, which locks what the query reads.
-//! This seqlock costs a query two loads, where a lock would double the time of a small rectangle.
+//! An engine may query an object from any thread while its pool draws, and may draw into it directly while the pool has
+//! nothing in flight. So the object's counter `turns` is incremented each time its pool becomes busy or idle. A query
+//! reads the buffer without a lock and keeps its answer if the count has not changed meanwhile; otherwise it asks the
+//! pool, which locks the bins that the query reads. This seqlock costs a query only two loads, where a lock would be
+//! measurably slower for a small rectangle.
 
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -19,10 +20,10 @@ pub(crate) trait Pool: Send + Sync {
     /// Flushes, then detaches the object with this attachment.
     fn forget(&self, attachment: &Attachment);
 
-    /// Tests a rectangle against what has been drawn so far. `None`: its object is another one by now.
+    /// Tests a rectangle against what has been drawn so far; `None` if the pool's object has been exchanged.
     fn test_rect(&self, attachment: &Attachment, edges: [f32; 4], w_min: f32) -> Option<CullingResult>;
 
-    /// Tests a mesh against what has been drawn so far. `None`: its object is another one by now.
+    /// Tests a mesh against what has been drawn so far; `None` if the pool's object has been exchanged.
     fn test_mesh(&self, attachment: &Attachment, mesh: &Mesh<'_>) -> Option<CullingResult>;
 }
 
@@ -45,10 +46,10 @@ impl Attachment {
         self.turns.load(Ordering::Acquire) % 2 == 1
     }
 
-    /// The answer to a query of the buffer, unless the pool had work in flight meanwhile.
+    /// The answer to a query of the buffer, unless the pool had work in flight during it.
     ///
-    /// A draw that begins meanwhile writes what the query reads: a race, as in any seqlock whose data is not atomic. The data
-    /// read is only compared, never used as an address, and the answer is discarded here.
+    /// A draw that begins during the query writes what it reads: a race, as in any seqlock whose data is not atomic.
+    /// The data is only compared, never used as an address, and the answer is discarded here.
     #[inline(always)]
     pub fn undisturbed<R>(&self, ask: impl FnOnce() -> R) -> Option<R> {
         let before = self.turns.load(Ordering::Acquire);
@@ -61,10 +62,11 @@ impl Attachment {
         (self.turns.load(Ordering::Relaxed) == before).then_some(answer)
     }
 
-    /// The pool becomes busy, or idle again. Calls alternate between the two, under the pool's lock.
+    /// Called when the pool becomes busy or idle, alternately, under the pool's lock.
     pub fn turn(&self) {
         self.turns.fetch_add(1, Ordering::AcqRel);
-        // The count is written before the buffer: other threads write that after taking the lock under which this is called.
+        // The count is written before the buffer: other threads write the buffer after taking the lock under which this
+        // is called.
         fence(Ordering::Release);
     }
 
@@ -84,7 +86,7 @@ impl Attachment {
     /// Attaches the object to this pool.
     ///
     /// # Errors
-    /// [`Taken`] if it belongs to another.
+    /// [`Taken`] if it belongs to another pool.
     pub fn attach(&self, pool: Arc<dyn Pool>) -> Result<(), Taken> {
         let mut slot = self.write();
         if slot.is_some() {
@@ -99,7 +101,7 @@ impl Attachment {
         *self.write() = None;
     }
 
-    /// The object is going away: its pool draws what was submitted and no longer has an object.
+    /// The object is going away: its pool draws everything submitted and then has no object.
     pub fn leave(&self) {
         if let Some(pool) = self.pool() {
             pool.forget(self);

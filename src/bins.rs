@@ -1,9 +1,9 @@
-//! Triangle lists: what `bin_triangles` fills and `render_trilist` draws.
+//! Triangle lists: filled by `bin_triangles`, drawn by `render_trilist`.
 
 use core::fmt;
 use core::marker::PhantomData;
 
-/// Floats that a binned triangle takes: x, y in 1/256 pixel and 1/w, of three vertices.
+/// Floats per binned triangle: x, y in 1/256 pixel and 1/w, for three vertices.
 pub(crate) const FLOATS_PER_TRIANGLE: usize = 9;
 
 /// A list of projected triangles in memory that the caller lends. The same struct as C's `MOC_TriList`.
@@ -33,35 +33,35 @@ impl<'a> TriList<'a> {
         Self { capacity, len: 0, data: storage.as_mut_ptr(), lent: PhantomData }
     }
 
-    /// How many triangles it can hold.
+    /// The maximum number of triangles.
     pub fn capacity(&self) -> usize {
         self.capacity as usize
     }
 
-    /// How many it holds.
+    /// The number of triangles.
     pub fn len(&self) -> usize {
         self.len as usize
     }
 
-    /// Does it hold none?
+    /// Is the list empty?
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Forgets the triangles, keeps the storage.
+    /// Removes the triangles but keeps the storage.
     pub fn clear(&mut self) {
         self.len = 0;
     }
 
-    /// Appends a triangle; false when the list is full.
+    /// Appends a triangle; returns false if the list is full.
     #[inline]
     pub(crate) fn push(&mut self, triangle: &[f32; FLOATS_PER_TRIANGLE]) -> bool {
         if self.len >= self.capacity || self.data.is_null() {
             return false;
         }
-        // SAFETY: `len < capacity`, and `data` holds `capacity` triangles: by `new` for a list made in
-        // Rust, by the contract of the C functions for one made there. Written unaligned, as C may align
-        // it to less than it should.
+        // SAFETY: `len < capacity`, and `data` holds `capacity` triangles: by `new` for a list made in Rust, by the
+        // contract of the C functions for one made there. Written unaligned, because the alignment of memory from C is
+        // not guaranteed.
         unsafe {
             self.data
                 .add(self.len as usize * FLOATS_PER_TRIANGLE)

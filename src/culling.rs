@@ -1,4 +1,5 @@
-//! The object that engines hold: settings, a buffer, and the calls, each of which checks and hands on.
+//! The central object: its settings and buffer, and its calls, each of which checks its arguments and forwards them to
+//! the kernel.
 
 mod recording;
 mod replay;
@@ -26,8 +27,8 @@ const NO_BUFFER: &str = "an object without a buffer is used by functions that ch
 
 /// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
 ///
-/// Clip space is (x, y, w) with x to the right, y up and w away from the eye; depth is 1/w, 0 infinitely
-/// far, larger is nearer. An object may be sent between threads, and shared by threads that only query.
+/// Clip space is (x, y, w) with x to the right, y up and w away from the eye. Depth is 1/w: 0 is infinitely far, larger
+/// is nearer. An object may be sent between threads, and shared by threads that only query it.
 ///
 /// ```
 /// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Settings, Vertices};
@@ -40,14 +41,14 @@ const NO_BUFFER: &str = "an object without a buffer is used by functions that ch
 /// # Ok::<(), masked_occlusion_culling::Error>(())
 /// ```
 pub struct MaskedOcclusionCulling {
-    /// First, so that it is dropped first: dropping it draws what a pool still has in flight.
+    /// The first field, so that it is dropped first: dropping it draws whatever a pool still has in flight.
     attachment: Attachment,
     level: Level,
     update_rule: UpdateRule,
     y_axis: YAxis,
     allocator: Allocator,
     statistics: bool,
-    /// The bits of the near plane, so that a pool can set it.
+    /// The bits of the near plane; atomic, so that a pool can set it.
     near: AtomicU32,
     buffer: Option<Buffer>,
     counters: Counters,
@@ -67,8 +68,8 @@ impl fmt::Debug for MaskedOcclusionCulling {
 }
 
 impl MaskedOcclusionCulling {
-    /// An object with a clear buffer of `width` by `height` pixels, each from 1 to 16,384, on the best instruction set that the
-    /// processor has and `settings` allow.
+    /// Makes an object with a clear buffer of `width` by `height` pixels, each from 1 to 16,384, using the best
+    /// instruction set that the processor has and `settings` allow.
     ///
     /// # Errors
     /// [`Error::InvalidSize`], [`Error::OutOfMemory`].
@@ -78,8 +79,8 @@ impl MaskedOcclusionCulling {
         Ok(moc)
     }
 
-    /// An object of the C interface, which gets its buffer later. Until then only calls that need no buffer may be made:
-    /// `capi` checks [`Self::has_buffer`] before all others.
+    /// An object of the C interface, which gets its buffer later. Until then only calls that need no buffer may be
+    /// made: `capi` checks [`Self::has_buffer`] before all others.
     pub(crate) fn without_buffer(settings: Settings) -> Self {
         Self {
             attachment: Attachment::default(),
@@ -110,19 +111,19 @@ impl MaskedOcclusionCulling {
         self.y_axis
     }
 
-    /// The allocator that the object was made with.
+    /// The allocator given at creation.
     pub fn allocator(&self) -> Allocator {
         self.allocator
     }
 
-    /// Gives the object a clear buffer of `width` by `height` pixels, each from 1 to 16,384. The size that it has already is a
-    /// clear.
+    /// Gives the object a clear buffer of `width` by `height` pixels, each from 1 to 16,384. If the size is unchanged,
+    /// this only clears the buffer.
     ///
-    /// In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can close, and hide what
-    /// the screen shows through it; `docs/guide.md` says what to do about it.
+    /// In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can close, and
+    /// hide what is seen through it on the screen; `docs/guide.md` says how to handle this.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps its buffer.
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps its previous buffer.
     pub fn set_resolution(&mut self, width: u32, height: u32) -> Result<(), Error> {
         if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
             return Err(Error::InvalidSize);
@@ -141,30 +142,30 @@ impl MaskedOcclusionCulling {
         (buffer.width(), buffer.height())
     }
 
-    /// The same, or nothing without a buffer.
+    /// The same; `None` without a buffer.
     fn size(&self) -> Option<(u32, u32)> {
         self.buffer.as_ref().map(|b| (b.width(), b.height()))
     }
 
-    /// The size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
-    /// rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and
-    /// row of bins reach to the buffer's edge.
+    /// The size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`, rounded down to
+    /// a multiple of 32, and its height divided by `bins_h`, rounded down to a multiple of 8. The last column and row
+    /// of bins extend to the buffer's edge.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] for no bins, or bins narrower or lower than a tile.
+    /// [`Error::InvalidSize`] for zero bins, or bins smaller than a tile.
     pub fn compute_bin_size(&self, bins_w: u32, bins_h: u32) -> Result<(u32, u32), Error> {
         self.buffer().bin_size(bins_w, bins_h)
     }
 
-    /// Sets the near plane, in clip-space w. What is nearer is clipped. The default is 0.
+    /// Sets the near plane, in clip-space w. Anything nearer is clipped. The default is 0.
     ///
     /// # Errors
-    /// [`Error::InvalidNumber`] for NaN or an infinity; the plane stays where it was.
+    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged.
     pub fn set_near_clip_plane(&mut self, near: f32) -> Result<(), Error> {
         self.set_near_shared(near)
     }
 
-    /// The same while others query; they take either plane.
+    /// The same while other threads query; their queries use either value.
     pub(crate) fn set_near_shared(&self, near: f32) -> Result<(), Error> {
         if !near.is_finite() {
             return Err(Error::InvalidNumber);
@@ -180,25 +181,25 @@ impl MaskedOcclusionCulling {
         f32::from_bits(self.near.load(Relaxed))
     }
 
-    /// Sets every pixel infinitely far.
+    /// Clears every pixel to infinitely far.
     pub fn clear_buffer(&mut self) {
         self.buffer.as_mut().expect(NO_BUFFER).clear();
         self.recorder.clear_buffer();
     }
 
-    /// Folds `other` into this buffer: afterwards it hides what either hid, conservatively. The two may
-    /// differ in instruction set and update rule.
+    /// Merges `other` into this buffer, which afterwards hides, conservatively, what either one hid. The two may differ
+    /// in instruction set and update rule.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`]; nothing is changed.
+    /// [`Error::SizeMismatch`]: nothing is changed.
     pub fn merge_buffer(&mut self, other: &Self) -> Result<(), Error> {
         self.merge_buffers(&[other])
     }
 
-    /// Folds several buffers into this one, with the result of folding them one by one in that order.
+    /// Merges several buffers into this one, with the same result as merging them one by one in that order.
     ///
     /// # Errors
-    /// As [`Self::merge_buffer`]: where one does not fit, none is folded.
+    /// As [`Self::merge_buffer`]: if one does not match, none is merged.
     pub fn merge_buffers(&mut self, others: &[&Self]) -> Result<(), Error> {
         let theirs = self.mergeable(others)?;
         let level = self.level;
@@ -207,7 +208,7 @@ impl MaskedOcclusionCulling {
         Ok(())
     }
 
-    /// The buffers of others, if they can be folded into this one.
+    /// The buffers of other objects, if they can be merged into this one.
     pub(crate) fn mergeable<'o>(&self, others: &[&'o Self]) -> Result<Vec<&'o Buffer>, Error> {
         let mine = self.buffer();
         let fitting = |other: &&'o Self| {
@@ -220,13 +221,14 @@ impl MaskedOcclusionCulling {
         others.iter().map(fitting).collect()
     }
 
-    /// Draws occluders: three indices a triangle.
+    /// Draws occluders, given as three indices per triangle.
     ///
-    /// Returns `ViewCulled` when every triangle lies outside of the view or faces away, else `Visible`.
-    /// Triangles with a NaN or infinite coordinate are dropped and counted: an occluder less is safe.
+    /// Returns `ViewCulled` if every triangle is outside the view or faces away, else `Visible`. Triangles with a NaN
+    /// or infinite coordinate are dropped and counted, which is safe: it only removes an occluder.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] when `triangles` is not whole triangles; [`Error::IndexOutOfRange`]. Nothing is drawn.
+    /// [`Error::InvalidSize`] if the length of `triangles` is not a multiple of three; [`Error::IndexOutOfRange`].
+    /// Nothing is drawn.
     pub fn render_triangles(
         &mut self,
         vertices: Vertices<'_>,
@@ -245,16 +247,15 @@ impl MaskedOcclusionCulling {
         result
     }
 
-    /// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the same
-    /// depth?
+    /// Tests occludees: would any part of these triangles, if drawn now, be as near as what was drawn there, or nearer?
     ///
-    /// Every pixel that a triangle touches counts, not only those whose centre it covers. `Visible` is
-    /// also the answer for triangles with a NaN or infinite coordinate and for those that come closer
-    /// to the eye than can be projected. `ViewCulled` when no triangle that faces the eye touches a pixel, or
-    /// `Occluded` where all around those is hidden.
+    /// Every pixel that a triangle touches counts, not only those whose centre it covers. The answer is also `Visible`
+    /// for triangles with a NaN or infinite coordinate and for those that come closer to the eye than can be projected.
+    /// If no front-facing triangle touches a pixel, it is `ViewCulled`, or `Occluded` if everything around the
+    /// triangles is hidden.
     ///
-    /// The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
-    /// holds the eye, for visible.
+    /// The answer is for the triangles, not for the volume that they enclose: treat a box that crosses the near plane
+    /// or contains the eye as visible.
     ///
     /// # Errors
     /// [`Error::InvalidSize`], [`Error::IndexOutOfRange`], as [`Self::render_triangles`].
@@ -278,7 +279,8 @@ impl MaskedOcclusionCulling {
         self.noted_triangles(mesh)
     }
 
-    /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
+    /// Goes through the pool that draws into the object, if there is one, and is recorded in the order in which the
+    /// pool draws.
     #[cold]
     fn noted_triangles(&self, mesh: &Mesh<'_>) -> CullingResult {
         // As in `noted_rect`.
@@ -292,26 +294,26 @@ impl MaskedOcclusionCulling {
         result
     }
 
-    /// The same, not recorded.
+    /// The same without recording.
     pub(crate) fn ask_triangles(&self, mesh: &Mesh<'_>) -> CullingResult {
         let (result, tally) = self.look_at_triangles(mesh);
         self.counters.add_query(self.statistics, 0, &tally);
         result
     }
 
-    /// The same without counting; also returns what to count.
+    /// The same without counting; also returns the tally.
     fn look_at_triangles(&self, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
         kernel::test(self.level, self.buffer(), &self.camera(mesh.options()), mesh)
     }
 
-    /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose
-    /// nearest point is at `w_min`. Every pixel that it touches counts.
+    /// Tests a rectangle in normalised device coordinates (x right, y up, the screen is [-1, 1]) whose nearest point is
+    /// at `w_min`. Every pixel that it touches counts.
     ///
-    /// `ViewCulled` when it lies off screen; `Visible` when a coordinate is NaN, `w_min` is not positive,
-    /// or the rectangle is empty.
+    /// Returns `ViewCulled` if it is off screen; `Visible` if a coordinate is NaN, `w_min` is not positive, or the
+    /// rectangle is empty.
     #[inline(always)]
     pub fn test_rect(&self, x_min: f32, y_min: f32, x_max: f32, y_max: f32, w_min: f32) -> CullingResult {
-        // First, so that whoever does not record pays for nothing else: a small rectangle takes 10 ns.
+        // First, so that without a recording nothing else has to be paid for; a small rectangle is very cheap.
         if self.recorder.is_on() {
             return self.noted_rect((x_min, y_min), (x_max, y_max), w_min);
         }
@@ -321,12 +323,12 @@ impl MaskedOcclusionCulling {
         }
     }
 
-    /// Through the pool that draws into the object, if there is one, and recorded in the order in which the pool draws.
-    /// In pairs, which need no memory; see [`rectangle::test`].
+    /// Goes through the pool that draws into the object, if there is one, and is recorded in the order in which the
+    /// pool draws. In pairs, which are passed in registers; see [`rectangle::test`].
     #[cold]
     fn noted_rect(&self, min: (f32, f32), max: (f32, f32), w_min: f32) -> CullingResult {
         let edges = [min.0, min.1, max.0, max.1];
-        // The pool may get another object meanwhile.
+        // The pool may be given another object meanwhile.
         while let Some(pool) = self.attachment.pool() {
             if let Some(result) = pool.test_rect(&self.attachment, edges, w_min) {
                 return result;
@@ -337,13 +339,13 @@ impl MaskedOcclusionCulling {
         result
     }
 
-    /// The same, not recorded.
+    /// The same without recording.
     #[inline(always)]
     pub(crate) fn ask_rect(&self, edges: [f32; 4], w_min: f32) -> CullingResult {
         self.count_rect(self.look_at_rect(edges, w_min))
     }
 
-    /// The same without counting; also returns what to count.
+    /// The same without counting; also returns the tally.
     #[inline(always)]
     fn look_at_rect(&self, edges: [f32; 4], w_min: f32) -> (CullingResult, u64) {
         rectangle::test(self.level, self.buffer(), self.y_axis, edges, w_min)
@@ -360,13 +362,13 @@ impl MaskedOcclusionCulling {
         rectangle::tiles(self.buffer(), self.y_axis, [x_min, y_min, x_max, y_max])
     }
 
-    /// Projects triangles and appends each that may be drawn to the list of every bin that it reaches;
-    /// `lists` are `bins_w * bins_h` bins, row by row.
+    /// Projects triangles and appends each one that may be drawn to the list of every bin that it reaches; `lists` are
+    /// `bins_w * bins_h` bins, row by row.
     ///
     /// # Errors
-    /// As [`Self::render_triangles`], and [`Error::InvalidSize`] for a bin count that
-    /// [`Self::compute_bin_size`] refuses or that is not the length of `lists`: nothing is binned.
-    /// [`Error::ListFull`]: some list had no room; what fitted is in the lists.
+    /// As [`Self::render_triangles`], and [`Error::InvalidSize`] for a bin count that [`Self::compute_bin_size`]
+    /// rejects or that is not the length of `lists`: nothing is binned. [`Error::ListFull`]: a list had no room; the
+    /// triangles that fit are in the lists.
     pub fn bin_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -399,13 +401,13 @@ impl MaskedOcclusionCulling {
         if full { Err(Error::ListFull) } else { Ok(result) }
     }
 
-    /// Draws a list inside `scissor`, or everywhere.
+    /// Draws a list within `scissor`, or everywhere.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] for a rectangle that is not in multiples of 32 and 8 (or
-    /// ending at the buffer's edge), or that extends beyond the buffer's last tile.
+    /// [`Error::InvalidSize`] for a rectangle whose edges are not multiples of 32 and 8 (and not at the buffer's edge),
+    /// or that extends beyond the buffer's last tile.
     pub fn render_trilist(&mut self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
-        // SAFETY: `&mut self` keeps every other user of the buffer away.
+        // SAFETY: `&mut self` excludes every other user of the buffer.
         unsafe { self.render_trilist_shared(list, scissor) }
     }
 
@@ -415,19 +417,19 @@ impl MaskedOcclusionCulling {
     /// As [`Self::render_trilist`].
     ///
     /// # Safety
-    /// While it runs, no other thread draws into an overlapping rectangle, and none queries, merges,
-    /// clears or reads the buffer.
+    /// While it runs, no other thread draws into an overlapping rectangle, and none queries, merges, clears or reads
+    /// the buffer.
     pub unsafe fn render_trilist_shared(&self, list: &TriList<'_>, scissor: Option<ScissorRect>) -> Result<(), Error> {
         let buffer = self.buffer();
         let scissor = buffer.scissor_tiles(scissor)?;
-        // SAFETY: the caller's contract: nobody else uses the rectangle. The coarse level is left as it is.
+        // SAFETY: the caller's contract: nobody else uses the rectangle. The coarse level is left unchanged.
         let region = unsafe { Region::new(buffer, scissor, None) };
         let tally = kernel::draw_list(self.level, region, list);
         self.counters.add_draw(self.statistics, &tally);
         Ok(())
     }
 
-    /// Projects a mesh with this near plane and bins what may be drawn; see [`kernel::bin`].
+    /// Projects a mesh with this near plane and bins its potentially drawn triangles; see [`kernel::bin`].
     pub(crate) fn bin(
         &self,
         mesh: &Mesh<'_>,
@@ -436,7 +438,7 @@ impl MaskedOcclusionCulling {
         binned: &mut BinnedTriangles,
     ) {
         let camera = self.camera_at(mesh.options(), near);
-        // Statistics count hidden triangles, too.
+        // Statistics count hidden triangles too.
         let prefilter = prefilter && !self.statistics;
         let tally = kernel::bin(self.level, self.buffer(), &camera, mesh, (bounds, prefilter), binned);
         self.counters.add_draw(self.statistics, &tally);
@@ -457,11 +459,11 @@ impl MaskedOcclusionCulling {
         self.level
     }
 
-    /// Writes the depth of every pixel to `depth`, width by height, row by row; negative where nothing
-    /// was drawn. `flip_y` writes the last row first.
+    /// Writes the depth of every pixel to `depth`, width by height, row by row; negative where nothing has been drawn.
+    /// `flip_y` writes the last row first.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] when `depth` is shorter than the buffer.
+    /// [`Error::InvalidSize`] if `depth` is shorter than the buffer.
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
         let buffer = self.buffer();
         let pixels = buffer.width() as usize * buffer.height() as usize;
@@ -470,13 +472,13 @@ impl MaskedOcclusionCulling {
         Ok(())
     }
 
-    /// All that was counted since the object was made; without [`Settings::statistics`] only the dropped triangles.
+    /// All counts since the object was made; without [`Settings::statistics`] only that of dropped triangles.
     pub fn statistics(&self) -> Statistics {
         self.counters.snapshot()
     }
 
-    /// Waits until the pool that draws into the object, if any, has drawn everything submitted to it: of use to C, whose pools
-    /// draw into objects that the program holds.
+    /// Waits until the pool that draws into the object, if any, has drawn everything submitted: for C, where the
+    /// program owns the objects that pools draw into.
     pub(crate) fn flush(&self) {
         if let Some(pool) = self.attachment.pool() {
             pool.flush();
@@ -491,7 +493,7 @@ impl MaskedOcclusionCulling {
         &self.recorder
     }
 
-    /// Only an object of the C interface can be without.
+    /// Only an object of the C interface can lack one.
     pub(crate) fn has_buffer(&self) -> bool {
         self.buffer.is_some()
     }
@@ -503,7 +505,7 @@ impl MaskedOcclusionCulling {
         self.buffer.as_ref().expect(NO_BUFFER)
     }
 
-    /// All of the buffer, for drawing.
+    /// The whole buffer, for drawing.
     fn region(&mut self) -> Region<'_> {
         Region::whole(self.buffer.as_mut().expect(NO_BUFFER))
     }
@@ -518,7 +520,7 @@ impl MaskedOcclusionCulling {
         Camera::new(buffer.width(), buffer.height(), self.y_axis, near)
     }
 
-    /// A mesh whose indices are checked.
+    /// A mesh with checked indices.
     pub(crate) fn mesh<'a>(
         &self,
         vertices: &'a Vertices<'_>,
@@ -529,7 +531,7 @@ impl MaskedOcclusionCulling {
             return Err(Error::InvalidSize);
         }
         self.check_indices(triangles, vertices.len())?;
-        // SAFETY: every index names a vertex of the slice.
+        // SAFETY: every index refers to a vertex of the slice.
         Ok(unsafe { Mesh::new(vertices.source(), vertices.matrix(), triangles, options) })
     }
 

@@ -1,24 +1,24 @@
-//! Why a call of the Rust interface is refused. The C interface has its own numbers (`capi/status.rs`).
+//! The errors of the Rust interface. The C interface has its own codes (`capi/status.rs`).
 
 use core::fmt;
 
-/// Why a call was refused. Nothing was drawn, merged or changed unless the variant says otherwise.
+/// Why a call was rejected. Nothing was drawn, merged or changed unless the variant says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error {
     /// A width, height, bin count, array length or rectangle is out of range.
     InvalidSize,
-    /// A number that has to be finite is not (the near plane).
+    /// A number that must be finite (the near plane) is not.
     InvalidNumber,
     /// The stride or an offset of a vertex layout is negative.
     InvalidLayout,
-    /// An index names a vertex that does not exist.
+    /// An index refers to a vertex that does not exist.
     IndexOutOfRange,
-    /// Two buffers of different resolution, or with rows in different directions, cannot be merged.
+    /// Two buffers with different resolutions or row directions cannot be merged.
     SizeMismatch,
-    /// A triangle list was full: the triangles that fit are in it, the others are not drawn from it.
+    /// A triangle list was full: it contains the triangles that fit, and the others will not be drawn.
     ListFull,
-    /// The allocator returned nothing. The object keeps the buffer that it had.
+    /// The allocator returned null. The object keeps its previous buffer.
     OutOfMemory,
     /// The pool has no object to draw into: see [`CullingThreadpool::set_buffer`](crate::CullingThreadpool::set_buffer).
     NoObject,

@@ -1,9 +1,9 @@
 //! Runs calls in the floating-point environment that the compiler assumes: round to nearest, denormals kept, no traps.
 //!
-//! Engines change it per thread: another rounding mode, denormals flushed to zero, exceptions that raise a signal. Identical
-//! bits and conservative answers need the default, and a division by a zero that is masked out later must not end the program.
-//! So an exported function reads the control register, which costs a nanosecond; only if it is not the default is it set, and
-//! restored at the end.
+//! Engines change it per thread: another rounding mode, denormals flushed to zero, exceptions that raise a signal.
+//! Identical bits and conservative answers need the default, and a division by zero whose result is masked out later
+//! must not end the program. So every exported function reads the control register, which is very cheap; only if it
+//! differs from the default is it set, and restored at the end.
 
 /// Whether the calling thread is in the default floating-point environment.
 #[inline]
@@ -20,7 +20,7 @@ pub(crate) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
 #[cold]
 #[inline(never)]
 fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
-    /// Restores the previous value, also while a panic unwinds.
+    /// Restores the previous value, even while a panic unwinds.
     struct SetBack(control::Register);
     impl Drop for SetBack {
         fn drop(&mut self) {
@@ -37,13 +37,13 @@ fn elsewhere<R>(body: impl FnOnce() -> R) -> R {
     result.expect("the body ran")
 }
 
-/// Rounds to the nearest integer, ties to even, by additions. `x` is below 2^51 in magnitude, or a NaN.
+/// Rounds to the nearest integer, ties to even, by additions. `x` is below 2^51 in magnitude, or NaN.
 ///
-/// The standard library calls C's `rint` where the processor's baseline has no such instruction, and MinGW's obeys the x87
-/// control word, which engines also change and which calls do not set.
+/// The standard library calls C's `rint` if the baseline has no such instruction, and MinGW's `rint` obeys the x87
+/// control word, which engines also change and which this library does not set.
 #[inline]
 pub(crate) fn round_ties_even(x: f64) -> f64 {
-    // 1.5 * 2^52: the sum's last bit is worth one, so that the addition rounds.
+    // 1.5 * 2^52: the unit in the last place of the sum is one, so the addition rounds.
     const SHIFT: f64 = 6_755_399_441_055_744.0;
     ((x + SHIFT) - SHIFT).copysign(x)
 }
@@ -65,15 +65,15 @@ mod control {
     #[inline]
     pub fn read() -> Register {
         let mut register = 0u32;
-        // SAFETY: it writes the four bytes that the operand names, and nothing else.
+        // SAFETY: it only writes the four bytes of the operand.
         unsafe { asm!("stmxcsr [{}]", in(reg) &raw mut register, options(nostack, preserves_flags)) };
         register
     }
 
     #[inline]
     pub fn write(register: Register) {
-        // SAFETY: it reads the four bytes that the operand names. The value is the default, which compiled code assumes, or the
-        // one read before, which is back in place when the caller's code continues.
+        // SAFETY: it only reads the four bytes of the operand. The value is either the default, which compiled code
+        // assumes, or the previous value, restored before the caller's code continues.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const register, options(nostack, preserves_flags)) };
     }
 }
@@ -101,7 +101,7 @@ mod control {
 
     #[inline]
     pub fn write(register: Register) {
-        // SAFETY: the value is the default, which compiled code assumes, or the one read before, which is back in place when
+        // SAFETY: the value is either the default, which compiled code assumes, or the previous value, restored before
         // the caller's code continues.
         unsafe { asm!("msr fpcr, {}", in(reg) register, options(nostack, preserves_flags)) };
     }
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_environment_is_the_default_inside_and_as_before_outside() {
-        // Rounding up, denormals flushed, all exceptions but inexact and denormal trapped.
+        // Round up, flush denormals, trap all exceptions except inexact and denormal.
         let odd = 0xd140;
         let inside = |odd| {
             control::write(odd);

@@ -1,24 +1,24 @@
-//! The way of a triangle: any source, any sink, one driver, on an instruction set.
+//! The path of a triangle: any source, any sink, one driver, for one instruction set.
 //!
 //! ```text
-//! source/    mesh        chunks of vertices are read, transformed, projected, snapped and marked; pages where they lie far apart;
-//!                        triangles that face away, lie outside or hold no pixel centre are culled, the few that cross the near
-//!                        plane or leave the guard band are clipped
+//! source/    mesh        vertices are read in chunks (or pages, if far apart), transformed, projected, snapped and marked;
+//!                        triangles that are back-facing, outside or without a pixel centre are culled, and the few that
+//!                        cross the near plane or leave the guard band are clipped
 //!            list        triangles that were projected into a list
 //!            binned      triangles that the pool binned
 //! raster/    queue       full vectors of triangles
-//!            set-up      screen bounds, hierarchy, edges, depth plane
-//!            traversal   rows of tiles, candidate tiles, coverage and depth bound of each
+//!            set-up      screen bounds, HiZ, edges, depth plane
+//!            traversal   tile rows, candidate tiles, coverage and depth bound of each
 //! sink/      draw        update tiles by a rule
 //!            query       compare tiles
-//!            lists, bin  store triangles before their tiles are known
+//!            lists, bin  store triangles to be drawn later
 //! ```
 //!
-//! A draw and a query differ in their sink and in their coverage (see `geometry/coverage.rs`): a draw rounds to less coverage
-//! and farther depth, a query to more coverage and nearer depth.
+//! A draw and a query differ in their sink and in their coverage (see `geometry/coverage.rs`): a draw rounds to less
+//! coverage and farther depth, a query to more coverage and nearer depth.
 //!
-//! All that reaches the buffer is computed with the same operations in the same order on every
-//! instruction set, sub-tile by sub-tile; how many triangles are set up together changes nothing.
+//! Everything that reaches the buffer is computed with the same operations in the same order on every instruction set,
+//! sub-tile by sub-tile; how many triangles are set up together makes no difference.
 
 #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
 mod tests;
@@ -38,12 +38,12 @@ pub(crate) fn draw(level: Level, region: Region<'_>, camera: &Camera, mesh: &Mes
     simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Draw::new(region) }).0
 }
 
-/// Tests a mesh. The answer counts only if nobody drew meanwhile.
+/// Tests a mesh. The answer is only valid if nobody drew in the meantime.
 pub(crate) fn test(level: Level, buffer: &Buffer, camera: &Camera, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
     simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Query::new(buffer) }).0
 }
 
-/// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True when one was full.
+/// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True if a list was full.
 pub(crate) fn bin_to_lists(
     level: Level,
     buffer: &Buffer,
@@ -61,15 +61,15 @@ pub(crate) fn bin_to_lists(
 /// Draws a list into a region.
 pub(crate) fn draw_list(level: Level, region: Region<'_>, list: &TriList<'_>) -> Tally {
     let (buffer, tiles) = (region.buffer(), region.tiles());
-    // A vector of sixteen lanes updates two tiles, one below the other, and must not update one outside the region.
+    // With sixteen lanes two tiles are updated at a time, one below the other, and both must be in the region.
     let whole_blocks = tiles.y0.is_multiple_of(2) && (tiles.y1.is_multiple_of(2) || tiles.y1 == buffer.all_tiles().y1);
     let job = Drive { buffer, source: list, sink: Draw::new(region) };
     let ((_, tally), _) = if whole_blocks { simd::run(level, job) } else { simd::run_on_eight_lanes(level, job) };
     tally
 }
 
-/// Projects a mesh and appends what may be drawn to binned triangles. `prefilter`: without what the buffer hides already;
-/// meanwhile other threads may draw into it, but not clear it.
+/// Projects a mesh and appends its potentially drawn triangles to the binned ones. `prefilter`: leaves out those that
+/// the buffer already hides; meanwhile other threads may draw into it, but must not clear it.
 pub(crate) fn bin(
     level: Level,
     buffer: &Buffer,
@@ -83,8 +83,8 @@ pub(crate) fn bin(
     tally
 }
 
-/// Draws binned triangles, in order, into the region of a bin, which begins with a coarse cell and ends with one or at the
-/// buffer's end; `bin` is the bin's number among those for which they were binned.
+/// Draws binned triangles, in order, into the region of a bin, which starts at a coarse cell boundary and ends at one
+/// or at the buffer's edge; `bin` is the bin's index among those for which they were binned.
 pub(crate) fn draw_binned<'a>(
     level: Level,
     region: Region<'_>,
@@ -102,7 +102,7 @@ pub(crate) fn max_index(level: Level, indices: &[u32]) -> Option<u32> {
     (!indices.is_empty()).then(|| simd::run(level, IndexRange(indices)).1)
 }
 
-/// Takes all triangles of a source to a sink. By value: what the kernel can keep in registers it must not find behind a pointer.
+/// Feeds all triangles of a source to a sink. By value, so that the compiler can keep it in registers.
 struct Drive<'a, Q, K> {
     buffer: &'a Buffer,
     source: Q,

@@ -1,8 +1,8 @@
 //! CPU occlusion culling on a masked hierarchical depth buffer.
 //!
-//! Draw a scene's large occluders into a [`MaskedOcclusionCulling`], then ask of each object, by a rectangle or
-//! by its triangles, whether any of it could be seen. An answer of [`CullingResult::Occluded`] is certain; any
-//! doubt is answered [`CullingResult::Visible`].
+//! Draw a scene's large occluders into a [`MaskedOcclusionCulling`], then ask for each object, by a rectangle or by its
+//! triangles, whether any of it could be seen. An answer of [`CullingResult::Occluded`] is certain; in case of doubt
+//! the answer is [`CullingResult::Visible`].
 //!
 //! The buffer stores no depth per pixel. For each sub-tile of 8x4 pixels it stores a reference depth, which no pixel is
 //! behind, and one to three working layers, each a depth and a mask of the pixels to which it applies; triangles are
@@ -25,18 +25,20 @@
 //! # Ok::<(), masked_occlusion_culling::Error>(())
 //! ```
 //!
-//! Meshes with a matrix are [`Vertices::model_space`]; a thread pool that draws is [`CullingThreadpool`]; recorded frames are
-//! [`Recording`].
+//! For meshes with a matrix use [`Vertices::model_space`]; to draw with several threads, [`CullingThreadpool`]; for
+//! recorded frames, [`Recording`].
 //!
 //! # Features
 //!
-//! - `capi` (default): the C functions (`capi`), which the headers in `include/` declare. Without it a Rust program exports none.
-//! - `glam` (default): `glam::Mat4` as a source of [`Matrix`]. Without it there are arrays.
+//! - `capi` (default): the C functions (`capi`), declared by the headers in `include/`. Without it, a Rust program
+//!   exports none.
+//! - `glam` (default): `glam::Mat4` can be used as a [`Matrix`]. Without it, use arrays.
 //!
-//! `src/kernel.rs` describes the way of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the vector layer.
+//! `src/kernel.rs` describes the path of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the
+//! vector layer.
 #![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
-// Some functions are for C alone.
+// Some functions exist only for C.
 #![cfg_attr(not(feature = "capi"), allow(dead_code))]
 
 mod allocator;
@@ -84,7 +86,7 @@ pub use types::{
 };
 pub use vertices::{ClipSpaceLayout, ModelSpaceLayout, VertexSpace, Vertices};
 
-/// The README's program is tested.
+/// Tests the README's program.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

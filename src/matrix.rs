@@ -1,12 +1,14 @@
-//! The matrices of the interface: 16 floats, from whichever library has them.
+//! The matrix type of the interface: 16 floats, from any math library.
 
-/// A 4x4 matrix, column by column: `m` takes (x, y, z, 1) to
-/// x' = x·m\[0\] + y·m\[4\] + z·m\[8\] + m\[12\], y' with m\[1\], m\[5\], m\[9\], m\[13\], and w' with m\[3\], m\[7\], m\[11\], m\[15\].
-/// z' (m\[2\], m\[6\], m\[10\], m\[14\]) matters to [`transform_vertices`](crate::transform_vertices) only.
+/// A 4x4 matrix, column by column: `m` transforms (x, y, z, 1) to
+/// x' = x·m\[0\] + y·m\[4\] + z·m\[8\] + m\[12\], y' with m\[1\], m\[5\], m\[9\], m\[13\], and w' with m\[3\], m\[7\],
+/// m\[11\], m\[15\]. z' (m\[2\], m\[6\], m\[10\], m\[14\]) is only used by
+/// [`transform_vertices`](crate::transform_vertices).
 ///
-/// That is the memory of OpenGL's column-major matrices that stand before a column vector, and of Direct3D's row-major ones that
-/// stand behind a row vector. It is made from arrays, and with the feature `glam` (a default) from the `glam::Mat4` of the
-/// version that the crate re-exports. From another version or another library pass the array:
+/// This is the memory layout of OpenGL's column-major matrices, which multiply a column vector from the left, and of
+/// Direct3D's row-major ones, which multiply a row vector from the right. It can be made from arrays, and with the
+/// feature `glam` (a default) from the `glam::Mat4` of the version that the crate re-exports. From another version or
+/// another library pass the array:
 ///
 /// ```
 /// use masked_occlusion_culling::Matrix;

@@ -1,8 +1,8 @@
-//! What objects are made with, and what draws and queries can be told.
+//! Settings of objects, and options of draws and queries.
 
 use crate::{Allocator, BackfaceWinding, ClipPlanes, Implementation, UpdateRule, YAxis};
 
-/// What an object is made with; none of it changes afterwards.
+/// Settings of an object, fixed at creation.
 ///
 /// ```
 /// use masked_occlusion_culling::{Settings, UpdateRule, YAxis};
@@ -13,22 +13,22 @@ use crate::{Allocator, BackfaceWinding, ClipPlanes, Implementation, UpdateRule, 
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Settings {
-    /// The highest instruction set that may be used.
+    /// The best instruction set that may be used.
     pub implementation: Implementation,
-    /// How sub-tiles take in triangles.
+    /// The update rule of the sub-tiles.
     pub update_rule: UpdateRule,
     /// The direction in which rows are counted.
     pub y_axis: YAxis,
     /// Where the buffer's memory comes from.
     pub allocator: Allocator,
     /// Whether draws and queries are counted for
-    /// [`MaskedOcclusionCulling::statistics`](crate::MaskedOcclusionCulling::statistics): a tenth of the time of a draw. Dropped
-    /// triangles are counted always.
+    /// [`MaskedOcclusionCulling::statistics`](crate::MaskedOcclusionCulling::statistics), which makes draws measurably
+    /// slower. Dropped triangles are always counted.
     pub statistics: bool,
 }
 
 impl Settings {
-    /// These settings with another highest instruction set.
+    /// These settings with another limit on the instruction set.
     pub const fn with_implementation(self, implementation: Implementation) -> Self {
         Self { implementation, ..self }
     }
@@ -38,7 +38,7 @@ impl Settings {
         Self { update_rule, ..self }
     }
 
-    /// These settings with another direction of rows.
+    /// These settings with another row direction.
     pub const fn with_y_axis(self, y_axis: YAxis) -> Self {
         Self { y_axis, ..self }
     }
@@ -48,7 +48,7 @@ impl Settings {
         Self { allocator, ..self }
     }
 
-    /// These settings with statistics counted or not.
+    /// These settings with statistics enabled or disabled.
     pub const fn with_statistics(self, statistics: bool) -> Self {
         Self { statistics, ..self }
     }
@@ -77,19 +77,19 @@ impl Default for Settings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct DrawOptions {
-    /// Which triangles face away.
+    /// Which triangles are back-facing.
     pub winding: BackfaceWinding,
     /// Which planes the mesh may cross; see [`ClipPlanes`].
     pub clip_planes: ClipPlanes,
 }
 
 impl DrawOptions {
-    /// The default: clockwise triangles face away, all planes may be crossed.
+    /// The default: clockwise triangles are back-facing, and all planes may be crossed.
     pub const fn new() -> Self {
         Self { winding: BackfaceWinding::Clockwise, clip_planes: ClipPlanes::ALL }
     }
 
-    /// These options with another winding of triangles that face away.
+    /// These options with another back-facing winding.
     pub const fn with_winding(self, winding: BackfaceWinding) -> Self {
         Self { winding, ..self }
     }

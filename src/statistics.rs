@@ -1,10 +1,10 @@
-//! Counters that calls add to once, at their end, from whichever thread they ran on.
+//! Counters to which each call adds once, at its end, from whichever thread it ran on.
 
 use core::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
 use crate::{OccludeeStatistics, OccluderStatistics, Statistics};
 
-/// What one call counted, kept in registers until it ends.
+/// The counts of one call, kept in registers until it ends.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Tally {
     pub processed: u64,
@@ -22,19 +22,19 @@ pub(crate) struct Counters {
 }
 
 impl Counters {
-    /// `all`: not only the dropped triangles.
+    /// `all`: count everything, not only the dropped triangles.
     pub fn add_draw(&self, all: bool, t: &Tally) {
         add(&self.occluders, draw_counts(all, t));
     }
 
-    /// The same without an atomic addition, of which each costs as much as a tile's depth test.
+    /// The same without atomic additions, which are as expensive as a tile's depth test.
     pub fn add_draw_alone(&mut self, all: bool, t: &Tally) {
         for (counter, n) in self.occluders.iter_mut().zip(draw_counts(all, t)) {
             *counter.get_mut() += n as i64;
         }
     }
 
-    /// `all`: anything at all.
+    /// `all`: count anything at all.
     #[inline]
     pub fn add_query(&self, all: bool, rectangles: u64, t: &Tally) {
         if all {
@@ -64,7 +64,7 @@ impl Counters {
     }
 }
 
-/// What a draw adds.
+/// Adds the counts of a draw.
 #[inline]
 fn draw_counts(all: bool, t: &Tally) -> [u64; 6] {
     if all {
@@ -74,7 +74,7 @@ fn draw_counts(all: bool, t: &Tally) -> [u64; 6] {
     }
 }
 
-/// Adds what is not zero: an atomic addition costs as much as a tile's depth test.
+/// Skips zeros, because an atomic addition is as expensive as a tile's depth test.
 #[inline]
 fn add<const N: usize>(counters: &[AtomicI64; N], counts: [u64; N]) {
     for (counter, n) in counters.iter().zip(counts) {

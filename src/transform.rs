@@ -1,4 +1,4 @@
-//! Vertices to clip space, for callers that want them there.
+//! Transforms vertices to clip space, for callers that need them there.
 
 use crate::geometry::project::dot;
 use crate::simd::{self, Job, Level, MAX_LANES, Simd};
@@ -6,11 +6,12 @@ use crate::source::VertexReader;
 use crate::vertices::{VertexSource, vertex_count};
 use crate::{Error, Matrix, ModelSpaceLayout};
 
-/// Transforms the positions (x, y, z, 1) that lie in `data` as `layout` says by `matrix` into packed clip-space x, y, z, w: as many
-/// as there are positions or places in `out`, whichever is less. The same bits as a draw with that matrix computes.
+/// Transforms positions (x, y, z, 1), stored in `data` according to `layout`, by `matrix` into packed clip-space x, y,
+/// z, w: as many as there are positions in `data` or elements in `out`, whichever is less. The bits are those that a
+/// draw with that matrix computes.
 ///
 /// # Errors
-/// [`Error::InvalidLayout`] where the stride or an offset is negative: nothing is written.
+/// [`Error::InvalidLayout`] if the stride or an offset is negative: nothing is written.
 pub fn transform_vertices(
     matrix: impl Into<Matrix>,
     data: &[f32],
@@ -20,7 +21,7 @@ pub fn transform_vertices(
     let layout = layout.into();
     let count = vertex_count(size_of_val(data), layout)?.min(out.len());
     let source = VertexSource { base: data.as_ptr().cast(), layout };
-    // SAFETY: both slices have that many.
+    // SAFETY: both slices have that many elements.
     unsafe { transform_raw(matrix.into().as_array(), source, out.as_mut_ptr().cast(), count) };
     Ok(())
 }
@@ -28,7 +29,7 @@ pub fn transform_vertices(
 /// # Safety
 /// `count` vertices can be read from `source`, and `out` can be written for four floats each; it may be unaligned.
 pub(crate) unsafe fn transform_raw(matrix: &[f32; 16], source: VertexSource, out: *mut f32, count: usize) {
-    // In parts whose vertices have numbers of 32 bits, as those that a mesh names.
+    // In parts whose vertex numbers fit in 32 bits, as the indices of a mesh do.
     const PART: usize = 1 << 30;
     let mut done = 0;
     while done < count {
@@ -52,7 +53,7 @@ impl Job for Transform<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) {
-        // SAFETY: whoever made the job vouched for both arrays.
+        // SAFETY: the creator of the job guarantees that both arrays are valid.
         unsafe { transform(s, self.matrix, self.source, self.out, self.count) }
     }
 }

@@ -1,12 +1,12 @@
-//! The small vocabulary of the interface: what a caller says and hears, in Rust's form and in the
-//! integers and structs that C and C++ see (`repr(C)`, same values as the class that engines know).
+//! The small types of the interface, in the form of Rust and in that of C and C++ (`repr(C)`, with the same values as
+//! Intel's class).
 
 /// An instruction set that the kernel is compiled for. All of them give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
 #[non_exhaustive]
 pub enum Implementation {
-    /// No vector instructions by name: runs anywhere.
+    /// Plain code without explicit vector instructions: runs anywhere.
     Scalar = -1,
     /// SSE2, the baseline of x86-64 and i686.
     Sse2 = 0,
@@ -22,20 +22,20 @@ pub enum Implementation {
     Simd128 = 17,
 }
 
-/// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+/// How a triangle is recorded in a sub-tile. Every rule is conservative; they differ in how much information they keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(i32)]
 #[non_exhaustive]
 pub enum UpdateRule {
-    /// One reference depth and two working layers (20 bytes a sub-tile): accurate in nearly any scene and order.
+    /// One reference depth and two working layers (20 bytes per sub-tile): accurate in nearly every scene and order.
     #[default]
     ThreeLayer = 0,
     /// Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion Culling", HPG 2016, section 3.2.
     Quick = 1,
     /// After Andersson, Hasselgren, Akenine-Möller: "Masked Depth Culling for Graphics Hardware", 2015.
     Accurate = 2,
-    /// One reference depth and three working layers (28 bytes a sub-tile): the most accurate, and the slowest. It pays where
-    /// dense geometry is drawn in no order.
+    /// One reference depth and three working layers (28 bytes per sub-tile): the most accurate rule, and the slowest.
+    /// It pays off for dense geometry that is drawn unsorted.
     FourLayer = 3,
 }
 
@@ -50,40 +50,40 @@ pub enum YAxis {
     Up = 1,
 }
 
-/// Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+/// Which triangles are back-facing and skipped, by their winding in normalised device coordinates (y up).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(i32)]
 pub enum BackfaceWinding {
     /// None: both sides are drawn.
     None = 0,
-    /// Clockwise triangles face away.
+    /// Clockwise triangles are back-facing.
     #[default]
     Clockwise = 1,
-    /// Counter-clockwise triangles face away.
+    /// Counter-clockwise triangles are back-facing.
     CounterClockwise = 2,
 }
 
 impl BackfaceWinding {
-    /// The winding of a number, as C and recordings have it.
+    /// The winding for a number from C or a recording.
     pub(crate) fn from_number(n: i32) -> Option<Self> {
         [Self::None, Self::Clockwise, Self::CounterClockwise].into_iter().find(|&winding| winding as i32 == n)
     }
 }
 
-/// What a draw or a query found.
+/// The result of a draw or a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
 pub enum CullingResult {
-    /// It may be seen.
+    /// It may be visible.
     Visible = 0,
     /// It is certainly hidden by what was drawn.
     Occluded = 1,
-    /// It lies outside of the view, or faces away.
+    /// It is outside the view, or back-facing.
     ViewCulled = 3,
 }
 
 impl CullingResult {
-    /// The answer of a number, as C and recordings have it.
+    /// The result for a number from C or a recording.
     pub(crate) fn from_number(n: i32) -> Option<Self> {
         [Self::Visible, Self::Occluded, Self::ViewCulled].into_iter().find(|&result| result as i32 == n)
     }
@@ -91,9 +91,8 @@ impl CullingResult {
 
 /// The frustum planes that a mesh may cross: a set of flags.
 ///
-/// Only `NEAR` changes anything: without it the near plane of the object is not applied (geometry
-/// behind the eye never is). The side planes need no promise from the caller; leaving one out is
-/// always safe and never faster.
+/// Only `NEAR` has an effect: without it the object's near plane is not applied (geometry behind the eye is always
+/// clipped). Omitting a side plane does not promise that the mesh stays inside it: it is always safe, and never faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClipPlanes(u8);
 
@@ -115,7 +114,7 @@ impl ClipPlanes {
     /// All five.
     pub const ALL: Self = Self(0x1f);
 
-    /// The set with these bits, or nothing where a bit is not a plane.
+    /// The set with these bits; `None` if a bit is not a plane.
     pub const fn from_bits(bits: u32) -> Option<Self> {
         if bits & !0x1f == 0 { Some(Self(bits as u8)) } else { None }
     }
@@ -144,7 +143,7 @@ impl core::ops::BitOr for ClipPlanes {
     }
 }
 
-/// A layout in the form of C and of the kernel, where what else is known says which coordinate the last offset names.
+/// A layout in the form used by C and the kernel, where the context determines which coordinate the last offset is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct VertexLayout {
     /// Bytes from one vertex to the next; not negative.
@@ -167,9 +166,8 @@ impl VertexLayout {
     }
 }
 
-/// A rectangle of pixels: `min` inside, `max` outside. x in multiples of 32, y of 8; a `max` may also
-/// be the width or height of the buffer, as it is or rounded up to whole tiles. Rows are counted in
-/// the object's y direction.
+/// A rectangle of pixels: `min` inclusive, `max` exclusive. x is in multiples of 32, y of 8; a `max` may also be the
+/// width or height of the buffer, as is or rounded up to whole tiles. Rows are counted in the object's y direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ScissorRect {
     /// First column.
@@ -182,16 +180,16 @@ pub struct ScissorRect {
     pub max_y: i32,
 }
 
-/// Counts of what draws did since the object was made.
+/// Statistics of all draws since the object was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct OccluderStatistics {
     /// Triangles submitted to `render_triangles` and `bin_triangles`, and those of drawn lists.
     pub num_processed_triangles: i64,
-    /// Those that face the eye and whose bounding box holds a pixel centre on the screen: counted when they are
-    /// binned, and again in each list that is drawn.
+    /// Those that are front-facing and whose bounds contain a pixel centre on the screen: counted when they are binned,
+    /// and again for each list that is drawn.
     pub num_rasterized_triangles: i64,
-    /// 32x8 tiles in the bounding boxes of such triangles.
+    /// 32x8 tiles in the bounds of such triangles.
     pub num_tiles_traversed: i64,
     /// Tiles in which a triangle changed, or could have changed, a sub-tile.
     pub num_tiles_updated: i64,
@@ -201,27 +199,27 @@ pub struct OccluderStatistics {
     pub num_dropped_triangles: i64,
 }
 
-/// Counts of what queries did since the object was made.
+/// Statistics of all queries since the object was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct OccludeeStatistics {
     /// Rectangles tested.
     pub num_processed_rectangles: i64,
-    /// Triangles submitted to `test_triangles` (those after the first visible one included).
+    /// Triangles submitted to `test_triangles` (including those after the first visible one).
     pub num_processed_triangles: i64,
-    /// Those of them that were compared with the buffer, up to the first that may be seen.
+    /// Those of them that were compared with the buffer, up to the first that may be visible.
     pub num_rasterized_triangles: i64,
-    /// Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
+    /// Tiles whose sub-tiles were compared with a rectangle, and those in the bounds of such triangles.
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; else that of dropped triangles alone. The same on every
-/// instruction set.
+/// All counts of an object, if its settings enable statistics; otherwise only that of dropped triangles. The same on
+/// every instruction set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Statistics {
-    /// Of draws.
+    /// Counts of draws.
     pub occluders: OccluderStatistics,
-    /// Of queries.
+    /// Counts of queries.
     pub occludees: OccludeeStatistics,
 }

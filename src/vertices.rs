@@ -1,11 +1,11 @@
-//! Where vertices come from: a slice that says how many there are, or a bare pointer that does not.
+//! Vertex inputs: a slice, which knows its length, or a bare pointer, which does not.
 
 use crate::{Error, Matrix, VertexLayout};
 
-/// Where x, y and w of clip-space vertices lie, in bytes.
+/// Where x, y and w of clip-space vertices are stored, in bytes.
 ///
-/// Packed `x, y, z, w` is [`Self::XYZW`], packed `x, y, w` is [`Self::XYW`], and arrays of `n` x, `n` y and `n` w, one behind the
-/// other, are `ClipSpaceLayout::new(4, 4 * n, 8 * n)`.
+/// Packed `x, y, z, w` is [`Self::XYZW`], packed `x, y, w` is [`Self::XYW`], and arrays of `n` x, `n` y and `n` w, one
+/// after the other, are `ClipSpaceLayout::new(4, 4 * n, 8 * n)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ClipSpaceLayout {
     /// Bytes from one vertex to the next; not negative.
@@ -28,10 +28,10 @@ impl ClipSpaceLayout {
     }
 }
 
-/// Where x, y and z of model-space vertices lie, in bytes.
+/// Where x, y and z of model-space vertices are stored, in bytes.
 ///
-/// Packed `x, y, z` is [`Self::XYZ`]; positions at the start of a larger vertex are `ModelSpaceLayout::new(stride, 4, 8)`; arrays
-/// of `n` x, `n` y and `n` z, one behind the other, are `ModelSpaceLayout::new(4, 4 * n, 8 * n)`.
+/// Packed `x, y, z` is [`Self::XYZ`]; positions at the start of a larger vertex are `ModelSpaceLayout::new(stride, 4,
+/// 8)`; arrays of `n` x, `n` y and `n` z, one after the other, are `ModelSpaceLayout::new(4, 4 * n, 8 * n)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ModelSpaceLayout {
     /// Bytes from one vertex to the next; not negative.
@@ -53,7 +53,7 @@ impl ModelSpaceLayout {
         Self { stride, offset_y, offset_z }
     }
 
-    /// Vertices of this layout, taken to clip space by `model_to_clip`.
+    /// Vertices of this layout, transformed to clip space by `model_to_clip`.
     pub fn with_matrix(self, model_to_clip: impl Into<Matrix>) -> VertexSpace {
         VertexSpace::Model(self, model_to_clip.into())
     }
@@ -63,9 +63,9 @@ impl ModelSpaceLayout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum VertexSpace {
-    /// x, y, w of clip space.
+    /// x, y, w in clip space.
     Clip(ClipSpaceLayout),
-    /// x, y, z of a model, and the matrix that takes (x, y, z, 1) to clip space.
+    /// x, y, z in model space, and the matrix that transforms (x, y, z, 1) to clip space.
     Model(ModelSpaceLayout, Matrix),
 }
 
@@ -76,7 +76,7 @@ impl From<ClipSpaceLayout> for VertexSpace {
 }
 
 impl VertexSpace {
-    /// From the form that C, recordings and the kernel have.
+    /// From the form used by C, recordings and the kernel.
     pub(crate) fn from_parts(layout: VertexLayout, model_to_clip: Option<Matrix>) -> Self {
         let VertexLayout { stride, offset_y, offset_zw } = layout;
         match model_to_clip {
@@ -132,11 +132,11 @@ pub struct Vertices<'a> {
 }
 
 impl<'a> Vertices<'a> {
-    /// Vertices that lie in `data` as `space` says; as many as fit. A [`ClipSpaceLayout`] is a space of its own, and
-    /// [`ModelSpaceLayout::with_matrix`] makes one of a layout and a matrix.
+    /// Vertices stored in `data` according to `space`; as many as fit. A [`ClipSpaceLayout`] is itself a space, and
+    /// [`ModelSpaceLayout::with_matrix`] makes one from a layout and a matrix.
     ///
     /// # Errors
-    /// [`Error::InvalidLayout`] where the stride or an offset is negative.
+    /// [`Error::InvalidLayout`] if the stride or an offset is negative.
     pub fn new(data: &'a [f32], space: impl Into<VertexSpace>) -> Result<Self, Error> {
         let space = space.into();
         let count = vertex_count(size_of_val(data), space.layout())?;
@@ -149,18 +149,18 @@ impl<'a> Vertices<'a> {
         Self { data: vertices.as_flattened(), space, count: vertices.len() }
     }
 
-    /// Model-space positions `x, y, z` and the matrix that takes (x, y, z, 1) to clip space.
+    /// Model-space positions `x, y, z` and the matrix that transforms (x, y, z, 1) to clip space.
     pub fn model_space(positions: &'a [[f32; 3]], model_to_clip: impl Into<Matrix>) -> Self {
         let space = ModelSpaceLayout::XYZ.with_matrix(model_to_clip);
         Self { data: positions.as_flattened(), space, count: positions.len() }
     }
 
-    /// How many vertices there are: every index must be below.
+    /// The number of vertices: every index must be less.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Are there none?
+    /// Are there no vertices?
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -179,7 +179,7 @@ impl<'a> Vertices<'a> {
     }
 }
 
-/// How many vertices of `layout` lie whole within `bytes`.
+/// How many vertices of `layout` fit entirely within `bytes`.
 pub(crate) fn vertex_count(bytes: usize, layout: VertexLayout) -> Result<usize, Error> {
     let VertexLayout { stride, offset_y, offset_zw } = layout;
     if stride < 0 || offset_y < 0 || offset_zw < 0 {
@@ -193,8 +193,8 @@ pub(crate) fn vertex_count(bytes: usize, layout: VertexLayout) -> Result<usize, 
     })
 }
 
-/// The pointer form that the kernel reads. Whoever makes one vouches that every vertex that an
-/// index names can be read at `base + index * stride`, `+ offset_y` and `+ offset_zw`.
+/// The pointer form that the kernel reads. Whoever creates one guarantees that every vertex that an index refers to can
+/// be read at `base + index * stride`, `+ offset_y` and `+ offset_zw`.
 #[derive(Clone, Copy)]
 pub(crate) struct VertexSource {
     pub base: *const u8,

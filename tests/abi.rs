@@ -1,8 +1,8 @@
-//! The binary interface: sizes and offsets of structs, numbers of enumerations, and the functions, as `tests/abi.txt` has
-//! them. The library is compared with the list here, and the header by a C compiler; what a program was compiled with
-//! stays true. `UPDATE_ABI=1 cargo test --test abi` adds what is new; what is there goes or changes by hand, with a
-//! new MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the differences with 32-bit ones (run by
-//! `.ci/i686`).
+//! The binary interface: sizes and offsets of structs, values of enumerations, and the functions, as listed in
+//! `tests/abi.txt`. Here the library is compared with the list, and a C compiler compares the header, so that compiled
+//! programs keep working. `UPDATE_ABI=1 cargo test --test abi` adds new entries; existing entries are removed or
+//! changed by hand, together with MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the
+//! differences with 32-bit ones (run by `.ci/i686`).
 #![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
@@ -13,7 +13,7 @@ use std::mem::offset_of;
 
 use masked_occlusion_culling::capi::*;
 
-/// A function has no number.
+/// A function has no value.
 type List = BTreeMap<String, Option<i64>>;
 
 macro_rules! structs {
@@ -23,7 +23,7 @@ macro_rules! structs {
             format!("offsetof({}, {})", stringify!($name), stringify!($field)),
             Some(offset_of!($name, $field) as i64),
         );)*
-        // Every field is listed.
+        // A compile error unless every field is listed.
         #[allow(clippy::redundant_closure_call)]
         let _ = |$name { $($field: _),* }: $name| ();
     )*};
@@ -32,7 +32,7 @@ macro_rules! structs {
 macro_rules! enumerations {
     ($list:ident: $($name:ident { $($value:ident)* })*) => {$(
         $($list.insert(stringify!($value).into(), Some($name::$value as i64));)*
-        // Every value is listed.
+        // A compile error unless every value is listed.
         let _ = |of: $name| match of { $($name::$value => ()),* };
     )*};
 }
@@ -143,7 +143,7 @@ fn the_library_is_what_programs_were_compiled_with() {
     assert!(listed.len() > 120, "only {} entries", listed.len());
 }
 
-/// The same numbers and functions by the header, in C and in C++.
+/// Compares the same values and functions with the header, in C and in C++.
 #[test]
 fn the_header_says_the_same() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -1,5 +1,5 @@
-//! The caller's allocator: everything that a buffer takes comes from it and goes back to it, and when it fails the
-//! object keeps what it had.
+//! The caller's allocator: all memory of a buffer comes from it and is returned to it, and if it fails the object keeps
+//! its previous state.
 
 use core::ffi::c_void;
 use core::sync::atomic::{AtomicIsize, AtomicUsize, Ordering::SeqCst};
@@ -11,7 +11,7 @@ use masked_occlusion_culling::{
 
 static HELD: AtomicIsize = AtomicIsize::new(0);
 static CALLS: AtomicUsize = AtomicUsize::new(0);
-/// Allocations that may still succeed.
+/// How many more allocations succeed.
 static LEFT: AtomicIsize = AtomicIsize::new(isize::MAX);
 /// The counters are shared: one test at a time.
 static TURN: Mutex<()> = Mutex::new(());
@@ -24,7 +24,7 @@ unsafe extern "C" fn counted_alloc(alignment: usize, size: usize) -> *mut c_void
     HELD.fetch_add(1, SeqCst);
     CALLS.fetch_add(1, SeqCst);
     let mut out = core::ptr::null_mut();
-    // SAFETY: the alignment is a power of two, and `out` a pointer of ours.
+    // SAFETY: the alignment is a power of two, and `out` points to a local variable.
     let failed = unsafe { libc::posix_memalign(&mut out, alignment.max(size_of::<usize>()), size) };
     assert_eq!(failed, 0);
     out
@@ -32,7 +32,7 @@ unsafe extern "C" fn counted_alloc(alignment: usize, size: usize) -> *mut c_void
 
 unsafe extern "C" fn counted_free(ptr: *mut c_void) {
     HELD.fetch_sub(1, SeqCst);
-    // SAFETY: the library hands back what `counted_alloc` gave.
+    // SAFETY: the library passes back a pointer from `counted_alloc`.
     unsafe { libc::free(ptr) };
 }
 
@@ -68,7 +68,7 @@ fn a_failing_allocator_leaves_the_buffer() {
     let wall = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0]];
     moc.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &DrawOptions::default()).unwrap();
     let held = HELD.load(SeqCst);
-    // Whichever of a new buffer's allocations fails.
+    // Makes each of a new buffer's allocations fail in turn.
     for left in 0.. {
         LEFT.store(left, SeqCst);
         let result = moc.set_resolution(640, 320);

@@ -1,5 +1,5 @@
-//! Many triangles in one call, each alone in its own square of tiles: what full vectors of survivors make of
-//! them must be what single triangles give.
+//! Many triangles in one call, each in a square of tiles of its own: drawing them as full vectors must give the same
+//! result as drawing them one by one.
 
 mod oracle;
 mod support;
@@ -19,13 +19,13 @@ fn moved(t: &Triangle, column: usize, row: usize) -> Triangle {
     t.map(|v| Vertex { x: v.x + by(column), y: v.y + by(row), z: v.z })
 }
 
-/// Squares of triangles that stay inside of their square.
+/// Squares with triangles that stay inside them.
 fn squares() -> impl Strategy<Value = Vec<Triangle>> {
     use Kind::*;
     let kinds = [Uniform, OnCentres, OnCorners, NearHorizontal, NearVertical, HorizontalEdge, VerticalEdge];
     let inside = proptest::strategy::Union::new(kinds.map(|k| of_kind(k, (CELL, CELL))));
     let end = CELL as i64 * UNIT;
-    // Some kinds reach a little over the edge of their square.
+    // Some kinds extend slightly past the edge of their square.
     let inside = inside.prop_map(move |t| t.map(|v| Vertex { x: v.x.clamp(0, end), y: v.y.clamp(0, end), z: v.z }));
     proptest::collection::vec(inside, CELLS * CELLS)
 }

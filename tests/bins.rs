@@ -1,4 +1,4 @@
-//! However the work is cut up (several calls, bins, scissor rectangles, threads), the buffer is the same.
+//! However the work is divided (several calls, bins, scissor rectangles, threads), the buffer is the same.
 
 mod scenes;
 
@@ -41,7 +41,7 @@ fn bits(moc: &MaskedOcclusionCulling) -> Vec<u32> {
     depth.into_iter().map(f32::to_bits).collect()
 }
 
-/// Every scene, instruction set, rule and row direction, with the bits that drawing object by object gives.
+/// Every scene, instruction set, rule and row direction, with the bits obtained by drawing object by object.
 fn every(test: impl Fn(&Scene, MaskedOcclusionCulling, Vec<u32>, &str)) {
     for scene in scenes::all() {
         for &implementation in Implementation::available() {
@@ -76,14 +76,14 @@ fn one_call_or_many() {
     });
 }
 
-/// The rectangle of a bin: the last of a row and of a column reach to the edge.
+/// The rectangle of a bin: the last one of a row or column extends to the edge.
 fn scissor(bin: u32, bins: (u32, u32), bin_size: (u32, u32)) -> ScissorRect {
     let side = |i: u32, n: u32, step: u32, size: u32| (i * step, if i + 1 == n { size } else { (i + 1) * step });
     let (x, y) = (side(bin % bins.0, bins.0, bin_size.0, SIZE.0), side(bin / bins.0, bins.1, bin_size.1, SIZE.1));
     ScissorRect { min_x: x.0 as i32, min_y: y.0 as i32, max_x: x.1 as i32, max_y: y.1 as i32 }
 }
 
-/// Bins every object of the scene into lists that are large enough.
+/// Bins every object of the scene into lists that are large enough for it.
 fn binned<'a>(
     scene: &Scene,
     moc: &MaskedOcclusionCulling,
@@ -99,7 +99,7 @@ fn binned<'a>(
 
 fn storage(scene: &Scene, bins: (u32, u32)) -> Vec<Vec<f32>> {
     let triangles: usize = scene.objects.iter().map(|o| o.len() / 3).sum();
-    // Clipping makes up to a few triangles of one.
+    // Clipping can turn one triangle into a few.
     vec![vec![0.0; 9 * (triangles * 2 + 64)]; (bins.0 * bins.1) as usize]
 }
 
@@ -111,7 +111,7 @@ fn bins_one_by_one() {
             let lists = binned(scene, &moc, bins, &mut storage);
             let bin_size = moc.compute_bin_size(bins.0, bins.1).unwrap();
             moc.clear_buffer();
-            // In an order that no drawing has: bins do not depend on each other.
+            // In an order that no draw call has: bins do not depend on each other.
             for i in (0..lists.len()).rev() {
                 moc.render_trilist(&lists[i], Some(scissor(i as u32, bins, bin_size))).unwrap();
             }

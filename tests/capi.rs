@@ -1,5 +1,5 @@
-//! Compiles the programs of `capi-tests` with the machine's C and C++ compilers, as a user of the library
-//! would, and runs them against the shared and the static library.
+//! Compiles the programs of `capi-tests` with the installed C and C++ compilers, as a user of the library would, and
+//! runs them with the shared and the static library.
 #![cfg(all(unix, feature = "capi"))]
 
 mod native;
@@ -64,7 +64,7 @@ fn succeed(what: &str, output: &Output) {
     );
 }
 
-/// Compiles and links; `None` where a compiler with `flags` cannot even link an empty program.
+/// Compiles and links; `None` if the compiler cannot even link an empty program with `flags`.
 fn build(program: &Program, library: Library, flags: &[&str], folder: &Path) -> Option<PathBuf> {
     if !flags.is_empty() && !links_an_empty_program(flags, folder) {
         return None;
@@ -145,7 +145,7 @@ programs! {
     threads_static: THREADS, Library::Static;
 }
 
-/// Each call in a process of its own, which its assertion is to stop.
+/// Each call runs in a process of its own, which its assertion must stop.
 #[test]
 fn layout_check() {
     const PROGRAM: Program = Program { name: "layout_check", sources: &["layout_check.cpp"], cpp: true };
@@ -160,7 +160,7 @@ fn layout_check() {
     }
 }
 
-/// Only 32-bit programs compute in the x87 unit.
+/// Only 32-bit programs compute with the x87 unit.
 #[test]
 #[cfg(target_arch = "x86")]
 fn precision_control() {
@@ -222,7 +222,7 @@ fn under_sanitizers(program: &Program) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let flags = [SANITIZERS, "-fno-sanitize-recover=all"];
     let Some(executable) = build(program, Library::Static, &flags, folder.path()) else {
-        // Nobody reads what a passing test prints: where it matters the check must not be lost unseen.
+        // Nobody reads the output of a passing test, so on CI the check must not be skipped silently.
         assert!(std::env::var("CI").as_deref() != Ok("true"), "this compiler cannot link {SANITIZERS}");
         println!("skipped: this compiler cannot link {SANITIZERS}");
         return;
@@ -235,7 +235,7 @@ fn under_sanitizers(program: &Program) {
     succeed(&format!("{} under {SANITIZERS}", program.name), &output);
 }
 
-/// All headers, alone, with every compiler that is here and each standard from the oldest on.
+/// Each header on its own, with every installed compiler and each standard from the oldest on.
 #[test]
 fn headers_compile_without_warnings() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -270,7 +270,7 @@ fn headers_compile_without_warnings() {
     assert!(compiled > 0, "no compiler was found");
 }
 
-/// windows.h defines `min`, `max`, `near` and more as macros.
+/// windows.h defines `min`, `max`, `near` and others as macros.
 #[test]
 fn headers_compile_beside_that_of_windows() {
     if !native::target().is_windows() {
@@ -296,7 +296,7 @@ fn headers_compile_beside_that_of_windows() {
     }
 }
 
-/// Each header with every switch the one way and the other, and the programs that `.ci/install-ways` installs.
+/// Each header with every switch on and off, and the programs that `.ci/install-ways` installs.
 #[test]
 fn headers_compile_with_every_switch() {
     const SWITCHES: [&str; 9] = [

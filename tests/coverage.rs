@@ -1,5 +1,6 @@
-//! Single triangles against the oracle, pixel by pixel: exact coverage, depth never nearer and never uselessly
-//! far, of every hard kind, at small, common and extreme sizes, on every instruction set, in both row directions.
+//! Single triangles against the oracle, pixel by pixel: coverage is exact, and depth is never too near and never
+//! uselessly far, for every hard kind, at small, common and extreme sizes, on every instruction set, in both row
+//! directions.
 
 mod oracle;
 mod support;
@@ -11,7 +12,7 @@ use oracle::{Oracle, Triangle};
 use support::triangles::{Kind, of_kind};
 use support::{check, clip_vertex, compare_one, draw, name, objects, read};
 
-/// Sizes and how many cases each is worth: reading back takes longer, the larger a buffer is.
+/// Sizes and the number of cases for each: reading back a larger buffer takes longer.
 const SIZES: [((usize, usize), u32); 8] = [
     ((1, 1), 200),
     ((7, 5), 300),
@@ -76,7 +77,7 @@ kinds! {
     wide: Wide,
 }
 
-/// The size at which edges 1/256 pixel high overflow elsewhere.
+/// The size at which edges with a height of 1/256 pixel overflow in other implementations.
 #[test]
 fn slivers_at_3840x2160() {
     let size = (3840, 2160);

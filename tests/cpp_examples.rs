@@ -1,5 +1,5 @@
-//! The programs of cpp-examples compile without a warning, run, and say what they should, with the library linked in
-//! either way.
+//! The programs of cpp-examples compile without a warning, run, and print what they should, with the library linked
+//! either statically or dynamically.
 #![cfg(feature = "capi")]
 
 mod native;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use native::{Link, Program};
 
-/// What a program prints, linked statically and dynamically.
+/// The output of a program, linked statically and dynamically.
 fn outputs(source: &str) -> [String; 2] {
     [Link::Static, Link::Shared].map(|link| {
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -95,12 +95,12 @@ fn conventions() {
     }
 }
 
-/// Every piece of C++ in docs/conventions.md is in the program, letter for letter.
+/// Every C++ snippet in docs/conventions.md is in the program verbatim.
 #[test]
 fn the_conventions_are_quoted_exactly() {
     let read = |path: &str| std::fs::read_to_string(native::root().join(path)).expect(path).replace("\r\n", "\n");
     let (document, program) = (read("docs/conventions.md"), read("cpp-examples/conventions.cpp"));
-    // A quotation may begin deeper than its first column; lines are compared without what they are indented by.
+    // A snippet may be indented differently, so lines are compared without their indentation.
     let plain = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
     let program = plain(&program);
     let quotes: Vec<&str> = document.split("```cpp\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
@@ -110,7 +110,7 @@ fn the_conventions_are_quoted_exactly() {
     }
 }
 
-/// The frame that the C header begins with compiles without a warning, runs, and finds what it should.
+/// The example frame at the beginning of the C header compiles without a warning, runs, and gives the right result.
 #[test]
 fn the_frame_in_the_header() {
     let header =
@@ -128,7 +128,7 @@ fn the_frame_in_the_header() {
     }
 }
 
-/// The demo's program on a scene of three boxes that are faces only: one hides another, the third stands beside.
+/// Runs the demo program on a scene of three squares: one hides another, and the third is next to them.
 #[test]
 fn demo_culls_what_is_behind() {
     let mut bytes = b"MOCDEMO1".to_vec();
@@ -171,7 +171,7 @@ fn demo_culls_what_is_behind() {
         assert!(depth[0] < 0.0);
     }
 
-    // A file that is cut short is refused.
+    // A truncated file is rejected.
     std::fs::write(&scene, &bytes[..200]).expect("the scene is written");
     let program = compile("demo.cpp", Link::Static, &[], folder.path());
     let error =

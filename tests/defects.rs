@@ -1,5 +1,5 @@
-//! Named tests of what is known to go wrong in occlusion cullers of this kind: a line each, in the order of
-//! queries, rendering, merging and bins. All of them hold on every instruction set and with every update rule.
+//! Named tests of known failure modes of occlusion cullers of this kind, one line each, in the order of queries,
+//! rendering, merging and bins. All of them run on every instruction set and with every update rule.
 
 mod oracle;
 mod support;
@@ -95,7 +95,7 @@ fn d04_triangles_between_pixel_centres_are_visible() {
         for t in [small, pole, flat] {
             assert_eq!(test_clip(&moc, &t), Visible, "{} {t:?}", name(&moc));
         }
-        // Hidden it is hidden, and in front of the wall it shows again.
+        // It is hidden once it is behind the wall, and visible again in front of it.
         draw_clip(&mut moc, &wall(1.0));
         for t in [small, pole, flat] {
             assert_ne!(test_clip(&moc, &t), Visible, "{} {t:?}", name(&moc));
@@ -107,8 +107,8 @@ fn d04_triangles_between_pixel_centres_are_visible() {
 
 #[test]
 fn d04_a_triangle_that_pokes_over_a_wall_s_edge_is_visible() {
-    // The wall covers the centres of columns 0 to 63 and ends at 63.6; what reaches from 63.2 into column 64, where
-    // nothing was drawn, shows there, centre or not.
+    // The wall covers the centres of columns 0 to 63 and ends at 63.6. An occludee from 63.2 into column 64, where
+    // nothing was drawn, is visible there, whether or not it covers a centre.
     every((256, 128), |mut moc| {
         draw_clip(&mut moc, &[at(63.6, -400.0, 1.0), at(63.6, 528.0, 1.0), at(-900.0, 64.0, 1.0)]);
         let poke = [at(63.2, 63.7, 2.0), at(64.3, 64.0, 2.0), at(63.2, 64.3, 2.0)];
@@ -133,7 +133,7 @@ fn d05_nan_and_infinite_vertices_are_dropped_and_counted() {
             assert!(depth(&moc).iter().all(|d| *d < 0.0), "{who} {bad}: something was drawn");
             assert_eq!(moc.test_rect(-1.0, -1.0, 1.0, 1.0, 100.0), Visible, "{who} {bad}");
             assert_eq!(moc.statistics().occluders.num_dropped_triangles, drawn, "{who} {bad}");
-            // The good triangles of the same call are drawn.
+            // The valid triangles of the same call are drawn.
             let mut mesh = [wall(1.0); 2].concat();
             mesh[0][0] = bad;
             draw_clip(&mut moc, &mesh);
@@ -166,7 +166,7 @@ fn d06_flat_edges_cover_no_false_pixel_in_large_buffers() {
     }
 }
 
-/// A generator of its own, so that cases stay the same whatever else changes.
+/// A separate generator, so that the cases stay the same whatever else changes.
 struct Numbers(u64);
 
 impl Numbers {
@@ -196,7 +196,7 @@ fn d07_triangles_that_leave_the_screen_keep_their_edges() {
             let (x, y) = (numbers.within(-end, 2 * end), numbers.within(-end, 2 * end));
             oracle::Vertex { x, y, z: 0.5f64.powi(numbers.within(0, 6) as i32) }
         });
-        // One instruction set a case: the others are compared with each other elsewhere.
+        // One instruction set per case: other tests compare them with each other.
         let which = case % objects.len();
         let moc = &mut objects[which];
         moc.clear_buffer();
@@ -225,7 +225,7 @@ fn d08_extreme_magnitudes_neither_crash_nor_come_too_near() {
                 moc.clear_buffer();
                 draw_clip(&mut moc, &t);
                 test_clip(&moc, &t);
-                // No point of a triangle in view is nearer than its nearest corner, if all lie in front.
+                // No point of a triangle in view is nearer than its nearest corner, if all corners are in front.
                 let nearest = t.iter().fold(f32::MAX, |n, v| n.min(v[3]));
                 let most = if nearest > 0.0 { 1.0 / nearest } else { f32::INFINITY };
                 let who = name(&moc);
@@ -264,7 +264,7 @@ fn d09_merging_is_never_nearer_than_the_truth() {
 
 #[test]
 fn d09_merging_hides_what_either_hid() {
-    // Each half of the screen is behind a wall in one of the two buffers.
+    // Each half of the screen is hidden by a wall in one of the two buffers.
     let half = |sign: f32| [[0.0, -4.0, 0.0, 1.0], [0.0, 4.0, 0.0, 1.0], [8.0 * sign, 0.0, 0.0, 1.0]];
     every((256, 128), |mut moc| {
         let mut other = object(moc.implementation(), moc.update_rule(), YAxis::Down, (256, 128));
@@ -331,7 +331,7 @@ fn d11_bad_bin_counts_are_errors() {
     every((256, 128), |moc| {
         let mesh = wall(1.0);
         let vertices = Vertices::clip_space(&mesh);
-        // None, narrower than a tile, lower than a tile, and not as many as there are lists.
+        // None, narrower than a tile, lower than a tile, and not matching the number of lists.
         for (w, h) in [(0, 1), (1, 0), (0, 0), (9, 1), (1, 17), (u32::MAX, 1), (u32::MAX, u32::MAX), (65536, 65537)] {
             let mut storage = [0.0; 9];
             let mut lists = [TriList::new(&mut storage)];

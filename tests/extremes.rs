@@ -1,10 +1,10 @@
-//! Coordinates of all sizes at once, as no scene has them: what comes out is bounded all the same.
+//! Coordinates of all magnitudes at once, as in no real scene: the results must still be within bounds.
 
 use masked_occlusion_culling::{
     BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, UpdateRule, Vertices,
 };
 
-/// A number of either sign between 10^-25 and 10^25, its exponent uniform; sometimes zero.
+/// A number of either sign between 10^-25 and 10^25, with a uniformly distributed exponent; sometimes zero.
 fn any_size(random: &mut fastrand::Rng, limit: f32) -> f32 {
     if random.u32(..16) == 0 {
         return 0.0;
@@ -20,7 +20,8 @@ fn object(rule: UpdateRule, width: u32, height: u32) -> MaskedOcclusionCulling {
 
 const BOTH_SIDES: DrawOptions = DrawOptions::new().with_winding(BackfaceWinding::None);
 
-/// Nothing in front of the near plane is ever stored, least of all something infinitely near, which hides everything.
+/// Nothing in front of the near plane is ever stored, in particular nothing infinitely near, which would hide
+/// everything.
 #[test]
 fn no_depth_is_nearer_than_the_near_plane() {
     let mut random = fastrand::Rng::with_seed(1);
@@ -52,7 +53,7 @@ fn no_depth_is_nearer_than_the_near_plane() {
     }
 }
 
-/// An empty buffer hides nothing: what is not visible in it lies outside of the view.
+/// An empty buffer hides nothing: a triangle that is not visible in it is outside the view.
 #[test]
 fn an_empty_buffer_never_answers_occluded() {
     let mut random = fastrand::Rng::with_seed(2);
@@ -62,7 +63,7 @@ fn an_empty_buffer_never_answers_occluded() {
         for k in 0..6000 {
             let triangle: [[f32; 4]; 3] = core::array::from_fn(|_| {
                 if k % 2 == 0 {
-                    // Around the screen, where a box may reach it and the triangle does not.
+                    // Around the screen, where the bounds may overlap it but the triangle does not.
                     let mut side = || random.i32(-9..=9) as f32;
                     [side(), side(), 0.0, 1.0]
                 } else {
@@ -77,7 +78,7 @@ fn an_empty_buffer_never_answers_occluded() {
     }
 }
 
-/// Found by the fuzzer: the box of this triangle holds the only pixel, the triangle passes by.
+/// Found by the fuzzer: the bounds of this triangle contain the only pixel, but the triangle misses it.
 #[test]
 fn a_triangle_that_passes_by_the_only_pixel_is_view_culled() {
     let moc = object(UpdateRule::ThreeLayer, 1, 1);
@@ -86,8 +87,8 @@ fn a_triangle_that_passes_by_the_only_pixel_is_view_culled() {
     assert_eq!(answer, Ok(CullingResult::ViewCulled));
 }
 
-/// Found by review: these corners lie so far out that f32 places them some subpixels off, and the triangle
-/// overlaps a corner of the screen by less than that. A query has to know how far off they may be.
+/// Found in review: these corners are so far away that f32 places them several subpixels off, and the triangle overlaps
+/// a corner of the screen by less than that. A query has to account for how far off they may be.
 #[test]
 fn a_triangle_with_far_corners_is_seen_at_the_corner_of_the_screen() {
     let moc = object(UpdateRule::ThreeLayer, 1920, 1080);
@@ -101,7 +102,8 @@ fn a_triangle_with_far_corners_is_seen_at_the_corner_of_the_screen() {
     assert_eq!(answer, Ok(CullingResult::Visible));
 }
 
-/// An infinite coordinate is counted, and seen, even where two others put the triangle outside of the screen.
+/// An infinite coordinate is counted, and the triangle visible, even if two other corners would put it outside the
+/// screen.
 #[test]
 fn what_is_not_finite_is_outside_of_nothing() {
     let mut moc = object(UpdateRule::ThreeLayer, 64, 48);
@@ -115,7 +117,7 @@ fn what_is_not_finite_is_outside_of_nothing() {
     }
 }
 
-/// Farther than 2^40 an occluder is dropped and counted, and of an occludee nothing is known.
+/// Beyond 2^40 an occluder is dropped and counted, and an occludee is visible.
 #[test]
 fn what_is_too_far_is_dropped_or_visible() {
     let mut moc = object(UpdateRule::ThreeLayer, 64, 48);

@@ -1,6 +1,6 @@
-//! Hard cases by name, measured beside the oracle: how many pixels are covered wrongly, and how far the stored depths are
-//! from the exact ones. A test for each says what may be; the figures are in docs/accuracy.md, which
-//! `UPDATE_ACCURACY=1 cargo test --test hard_cases` writes anew.
+//! Hard cases by name, measured against the oracle: how many pixels are covered wrongly, and how far the stored depths
+//! are from the exact ones. A test for each gives the limits; the figures are in docs/accuracy.md, which
+//! `UPDATE_ACCURACY=1 cargo test --test hard_cases` rewrites.
 
 mod oracle;
 mod support;

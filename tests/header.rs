@@ -1,5 +1,5 @@
-//! `include/masked_occlusion_culling.h` is what cbindgen makes of `src/capi` now, and `moc_names.h` and `moc_names_end.h`
-//! list the functions exported there. `UPDATE_HEADER=1 cargo test --test header` regenerates them.
+//! `include/masked_occlusion_culling.h` matches the output of cbindgen for `src/capi`, and `moc_names.h` and
+//! `moc_names_end.h` list the functions exported there. `UPDATE_HEADER=1 cargo test --test header` regenerates them.
 
 use std::fs;
 use std::path::Path;
@@ -47,7 +47,7 @@ fn generate(root: &Path) -> String {
     }
     let mut header = Vec::new();
     builder.generate().expect("cbindgen understands src/capi").write(&mut header);
-    // Rust's heading for what the caller answers for means nothing in C.
+    // Rust's heading for the caller's obligations means nothing in C.
     String::from_utf8(header).expect("the header is text").replace(" * # Safety\n", " * Required:\n")
 }
 
@@ -95,7 +95,7 @@ fn the_lists_of_names_are_current() {
     is_current(&end, &with_names(root, &end, |name| format!("#undef {name}\n")));
 }
 
-/// Every function says what the caller answers for, and every one that can refuse says how.
+/// Every function documents the caller's obligations, and every one that can fail documents how.
 #[test]
 fn no_function_is_without_its_paragraphs() {
     let header = generate(Path::new(env!("CARGO_MANIFEST_DIR")));

@@ -1,5 +1,5 @@
-//! Whatever programs written for Intel MOC do with its headers compiles with this library's, without warnings, on every
-//! installed compiler and with each standard from C++11 on.
+//! Everything that programs written for Intel MOC do with its headers compiles with this library's, without warnings,
+//! on every installed compiler and with each standard from C++11 on.
 #![cfg(all(unix, feature = "capi"))]
 
 mod native;
@@ -78,7 +78,7 @@ fn a_switch_over_all_instruction_sets() {
     compiles(&SWITCH.replace("CASES", all));
 }
 
-/// The two tests above mean something only if the compiler gives this warning.
+/// The two tests above are meaningful only if the compiler gives this warning.
 #[test]
 fn a_switch_that_misses_one_of_the_four_is_warned_of() {
     let refusals =

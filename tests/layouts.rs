@@ -1,4 +1,4 @@
-//! However vertices lie in memory, and whether the matrix is applied here or beforehand, the buffer is the same.
+//! However vertices are stored, and whether the matrix is applied here or beforehand, the buffer is the same.
 
 use masked_occlusion_culling::{
     BackfaceWinding, ClipSpaceLayout, DrawOptions, Implementation, MaskedOcclusionCulling, Matrix, ModelSpaceLayout,
@@ -13,7 +13,7 @@ const MATRIX: [f32; 16] = [1.2, 0.1, 9.0, 0.05, -0.15, 1.4, 9.0, -0.02, 0.03, -0
 
 const IDENTITY: [f32; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
-/// Positions in a box before the camera.
+/// Positions in a box in front of the camera.
 fn positions() -> Vec<[f32; 3]> {
     let coordinate = |i: usize, k: usize| ((i * [37, 53, 71][k] + k * 11) % 101) as f32 / 50.0 - 1.0;
     (0..COUNT).map(|i| [coordinate(i, 0) * 2.0, coordinate(i, 1) * 2.0, coordinate(i, 2) + 1.5]).collect()
@@ -71,7 +71,7 @@ fn every_layout_gives_the_same_buffer() {
     let clip = clip_space();
     let packed: Vec<f32> = clip.iter().flat_map(|v| [v[0], v[1], v[3]]).collect();
     let apart: Vec<f32> = [0, 1, 3].iter().flat_map(|k| clip.iter().map(|v| v[*k])).collect();
-    // x last, y first is what no offset can say; w before y is.
+    // No offset can express x last and y first; w before y can be expressed.
     let turned: Vec<f32> = clip.iter().flat_map(|v| [v[0], v[3], f32::NAN, v[1], f32::NAN]).collect();
     let n = COUNT as i32;
     for &implementation in Implementation::available() {
@@ -102,7 +102,7 @@ fn a_matrix_gives_what_transforming_beforehand_gives() {
     }
 }
 
-/// Whoever makes it, column by column.
+/// Whatever it is made from, column by column.
 #[test]
 fn matrices_of_every_source_are_the_same() {
     let columns: [[f32; 4]; 4] = std::array::from_fn(|column| std::array::from_fn(|row| MATRIX[4 * column + row]));
@@ -116,7 +116,7 @@ fn matrices_of_every_source_are_the_same() {
     }
 }
 
-/// Far apart and sparsely used vertices take another way through the library than a dense few.
+/// Vertices far apart and sparsely used take a different path through the library than a few dense ones.
 #[test]
 fn sparse_and_repeated_indices_give_the_same_buffer() {
     const APART: usize = 5000;

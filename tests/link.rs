@@ -1,5 +1,5 @@
-//! Programs whose header declares a class of virtual methods, which cannot change, link the files of `link` and run.
-//! The header is one of our own (`capi-tests/abstract_header`) with the methods in the order that theirs has.
+//! Programs with a header that declares a class with virtual methods, which cannot change, link the files of `link` and
+//! run. The header is written for these tests (`capi-tests/abstract_header`), with the methods in the order of Intel's.
 #![cfg(feature = "capi")]
 
 mod native;
@@ -18,7 +18,7 @@ fn path(name: &str) -> String {
 
 fn build(program: &str, link: Link, defines: &[(&str, &str)], files: &[&str], flags: &[&str], out: &Path) -> PathBuf {
     let source = native::root().join("capi-tests").join(program);
-    // Before this repository's own headers, which are found after them.
+    // Before this repository's own headers, which are found after it.
     let mut all = vec![format!("-I{}", path("capi-tests/abstract_header"))];
     all.extend(files.iter().map(|f| path(f)));
     all.push(if native::target().is_msvc() { "/WX" } else { "-Werror" }.into());
@@ -70,7 +70,7 @@ fn with_the_recorder_of_the_program() {
     run("abstract_recorder.cpp", &[("MOC_RECORDER_ENABLE", "1")], &[CLASS]);
 }
 
-/// What was compiled before is linked as it is, also where the program does without exceptions and type information.
+/// Existing object files are linked unchanged, also in programs without exceptions and type information.
 #[test]
 #[cfg(unix)]
 fn with_an_object_file() {
@@ -121,7 +121,7 @@ fn under_sanitizers() {
     native::run(native::target().command(exe).env("ASAN_OPTIONS", "detect_leaks=1")).unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// With every compiler that is here, and the warnings that engines ask for.
+/// With every installed compiler, and the warnings that engines enable.
 #[test]
 #[cfg(unix)]
 fn without_warnings() {
@@ -145,7 +145,7 @@ fn without_warnings() {
     assert!(compiled > 0, "no compiler was found");
 }
 
-/// The header of this repository instead of the program's, and a pool that would not record.
+/// With this repository's header instead of the program's, and a pool that would not record.
 #[test]
 #[cfg(unix)]
 fn what_cannot_work_is_refused_by_name() {

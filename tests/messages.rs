@@ -1,4 +1,4 @@
-//! Every function that can refuse a call reports it under its own name.
+//! Every function that can reject a call reports it under its own name.
 
 #![cfg(all(target_os = "linux", feature = "capi"))]
 
@@ -22,7 +22,7 @@ unsafe extern "C" fn listen(_: *mut c_void, status: i32, message: *const c_char)
 
 /// Calls every function with null for each pointer that must not be null.
 fn call_all() {
-    // SAFETY: null is refused everywhere.
+    // SAFETY: null is rejected everywhere.
     unsafe {
         MOC_DefaultSettings(null_mut());
         MOC_Create(null(), null_mut());
@@ -96,7 +96,7 @@ fn every_function_that_refuses_names_itself() {
     let named: BTreeSet<String> = told.iter().map(|m| m.split(": ").next().unwrap().to_string()).collect();
     assert_eq!(named.len(), told.len(), "each exactly once: {told:?}");
 
-    // Functions that refuse nothing.
+    // Functions that never reject a call.
     let never = [
         "MOC_GetAbiVersion",
         "MOC_StatusText",

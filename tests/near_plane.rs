@@ -1,6 +1,6 @@
-//! Triangles that cross the near plane, or reach beyond any guard band, against their exact intersection with
-//! every pixel's ray. A clipped vertex has to be snapped too, so edges may move by a little; depth may not come
-//! nearer than the true plane does within that little.
+//! Triangles that cross the near plane, or extend beyond any guard band, against their exact intersection with every
+//! pixel's ray. A clipped vertex is snapped too, so edges may move slightly; depth may not be nearer than the true
+//! plane within that distance.
 
 mod oracle;
 mod support;
@@ -19,13 +19,13 @@ const TOLERANCE: f64 = 1.0 / 16.0;
 
 type Corners = [[f32; 3]; 3];
 
-/// What a pixel may hold: where its centre lies, and the nearest depth.
+/// The allowed contents of a pixel: the position of its centre relative to the triangle, and the nearest depth.
 type Allowed = Vec<(Place, f64)>;
 
 fn allowed(v: &Corners, near: f32, axis: YAxis) -> Option<Allowed> {
     let wide = v.map(|c| c.map(f64::from));
     let exact = Homogeneous::new(&wide, f64::from(near), SIZE, axis == YAxis::Up)?;
-    // Nothing that is drawn is nearer than the near plane.
+    // Nothing is drawn nearer than the near plane.
     let limit = if near > 0.0 { f64::from(1.0 / near) } else { f64::INFINITY };
     let pixel = |i: usize| {
         let (column, row) = (i % SIZE.0, i / SIZE.0);
@@ -66,7 +66,7 @@ fn run(cases: u32, seed: u64, strategy: &impl Strategy<Value = (Corners, f32)>, 
     check(cases, seed, strategy, |(v, near)| {
         let (objects, depth) = &mut *state.borrow_mut();
         for axis in AXES {
-            // Edge-on triangles have no inside to speak of: they must only be survived.
+            // Edge-on triangles have no interior: the only requirement is that nothing breaks.
             let allowed = allowed(&v, near, axis).unwrap_or_default();
             let mut of_axis = objects.iter_mut().filter(|moc| moc.y_axis() == axis);
             of_axis.try_for_each(|moc| compare(moc, &v, near, whole, &allowed, depth))?;
@@ -79,7 +79,7 @@ fn corner(w: impl Strategy<Value = f32>) -> impl Strategy<Value = [f32; 3]> {
     (-3.0..3.0f32, -3.0..3.0f32, w).prop_map(|(x, y, w)| [x, y, w])
 }
 
-/// One or two corners behind, the others in front, and then turned to any place.
+/// One or two corners behind the eye and the others in front, in any rotation.
 fn crossing() -> impl Strategy<Value = Corners> {
     (corner(-4.0..0.0f32), corner(-4.0..4.0f32), corner(0.5..6.0f32), 0..3usize).prop_map(|(a, b, c, turn)| {
         let mut v = [a, b, c];
@@ -93,13 +93,13 @@ fn crossing_the_near_plane() {
     run(3000, 1, &(crossing(), 0.05..1.0f32), true);
 }
 
-/// With the plane at the eye the part that is too close to project may be left out, which is safe.
+/// With the near plane at the eye, the part that is too close to project may be left out, which is safe.
 #[test]
 fn crossing_the_eye() {
     run(2000, 2, &(crossing(), Just(0.0f32)), false);
 }
 
-/// A floor under the eye: what every game draws.
+/// A floor under the eye, as in every game.
 #[test]
 fn floors_under_the_eye() {
     let floor = (0.01..2.0f32, 1.0..500.0f32, 0.05..0.3f32)
@@ -107,8 +107,8 @@ fn floors_under_the_eye() {
     run(1000, 3, &floor, true);
 }
 
-/// What is far nearer than all that is on the screen, a floor's corners on the near plane, leaves the depths there as good
-/// as those of a floor that ends before the eye.
+/// Geometry much nearer than anything on the screen, such as a floor's corners on the near plane, does not make the
+/// depths there worse than those of a floor that ends in front of the eye.
 #[test]
 fn depths_of_floors_under_the_eye() {
     let floor = (0.5..2.0f32, 10.0..500.0f32, 0.001..0.1f32)
@@ -144,7 +144,7 @@ fn depths_of_floors_under_the_eye() {
     });
 }
 
-/// Corners up to a million pixels away: no guard band holds them, so the sides are clipped too.
+/// Corners up to a million pixels away: beyond any guard band, so the sides are clipped too.
 #[test]
 fn beyond_the_guard_band() {
     let far = prop_oneof![-3.0..3.0f32, -300.0..300.0f32, -20_000.0..20_000.0f32];
@@ -152,7 +152,7 @@ fn beyond_the_guard_band() {
     run(3000, 4, &([corner.clone(), corner.clone(), corner], Just(0.1f32)), true);
 }
 
-/// Behind and far out at once.
+/// Both behind the eye and far out.
 #[test]
 fn near_plane_and_guard_band_at_once() {
     let far = prop_oneof![-3.0..3.0f32, -3000.0..3000.0f32];
@@ -160,7 +160,7 @@ fn near_plane_and_guard_band_at_once() {
     run(3000, 5, &([corner.clone(), corner.clone(), corner], 0.1..0.5f32), true);
 }
 
-/// General w everywhere, nothing to clip: the same promise.
+/// Arbitrary w everywhere, nothing to clip: the same guarantee.
 #[test]
 fn any_w_in_front() {
     let corner = (-1.5..1.5f32, -1.5..1.5f32, 0.3..1000.0f32).prop_map(|(x, y, w)| [x * w, y * w, w]);

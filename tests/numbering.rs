@@ -1,5 +1,5 @@
-//! How a mesh numbers its vertices changes nothing: close together, in two rows of a wide grid, strewn over a large
-//! array, or three of its own for every triangle.
+//! How a mesh numbers its vertices makes no difference: close together, in two rows of a wide grid, scattered over a
+//! large array, or three separate ones for every triangle.
 
 mod oracle;
 mod support;
@@ -10,7 +10,7 @@ use support::{RULES, bits, both_sides, name, object};
 
 const SIZE: (usize, usize) = (400, 230);
 
-/// A bumpy sheet over more than the screen, `wide` by `high` squares.
+/// A bumpy sheet that extends past the screen, `wide` by `high` squares.
 fn sheet(wide: u32, high: u32, near: f32) -> (Vec<[f32; 4]>, Vec<u32>) {
     let mut vertices = Vec::new();
     for y in 0..=high {
@@ -31,14 +31,14 @@ fn sheet(wide: u32, high: u32, near: f32) -> (Vec<[f32; 4]>, Vec<u32>) {
     (vertices, indices)
 }
 
-/// The same triangles, with the vertices moved to where `to` says in an array of `len`.
+/// The same triangles, with the vertices moved to the positions `to` in an array of `len`.
 fn renumbered(vertices: &[[f32; 4]], indices: &[u32], len: usize, to: &[u32]) -> (Vec<[f32; 4]>, Vec<u32>) {
-    // What no index names is not a number: it is projected at times, and must not matter.
+    // Unused vertices are NaN: they are sometimes projected, and must not matter.
     let mut moved = vec![[f32::NAN; 4]; len];
     for (vertex, &to) in vertices.iter().zip(to) {
         moved[to as usize] = *vertex;
     }
-    // The array ends with the last vertex that is named, so that reading beyond it is found by valgrind.
+    // The array ends with the last used vertex, so that valgrind finds any read beyond it.
     moved.truncate(*to.iter().max().unwrap() as usize + 1);
     moved.shrink_to_fit();
     (moved, indices.iter().map(|&i| to[i as usize]).collect())
@@ -47,7 +47,7 @@ fn renumbered(vertices: &[[f32; 4]], indices: &[u32], len: usize, to: &[u32]) ->
 #[test]
 fn numbering_changes_no_bit_and_no_answer() {
     let mut rng = Rng::with_seed(7);
-    // Some fit in a chunk at once, some in pages, some in neither; some have a few triangles only.
+    // Some fit in a chunk, some in pages, some in neither; some have only a few triangles.
     for (wide, high) in [(3, 2), (20, 12), (300, 5), (1000, 3), (5000, 1), (9000, 1), (700, 20)] {
         let (vertices, indices) = sheet(wide, high, 5.0);
         let n = vertices.len();

@@ -1,5 +1,5 @@
-//! The oracle's own check: its spans against the same rule as signs of edge functions, and its ray intersection
-//! against its spans. A wrong oracle would pass wrong pixels.
+//! Checks the oracle itself: its spans against the same rule expressed by signs of edge functions, and its ray
+//! intersection against its spans. A wrong oracle would accept wrong pixels.
 
 mod oracle;
 mod support;
@@ -14,7 +14,7 @@ use support::{check, clip_vertex};
 
 const SIZE: (usize, usize) = (64, 32);
 
-/// Inside by the signs of the three edges; what lies on an edge belongs to left ones and to those at the start of
+/// Inside by the signs of the three edge functions; points on an edge belong to left edges and to those at the start of
 /// the rows.
 fn by_signs(t: &Triangle, column: usize, row: usize) -> bool {
     let (x, y) = (column as i64 * UNIT + UNIT / 2, row as i64 * UNIT + UNIT / 2);
@@ -72,7 +72,8 @@ fn rays_meet_what_spans_cover() {
     });
 }
 
-/// The distances that wrong pixels are told by have the sign of what is covered, and both oracles tell the same one.
+/// The distances by which wrong pixels are judged have the sign of the coverage, and both oracles give the same
+/// distance.
 #[test]
 fn distances_have_the_sign_of_the_spans() {
     check(1000, 3, &of_any_kind(SIZE), |t| {
@@ -99,7 +100,7 @@ fn distances_have_the_sign_of_the_spans() {
     });
 }
 
-/// The plane of twice the precision is that of the weights within the triangle, and goes through the corners.
+/// The plane in twice double precision matches the barycentric weights within the triangle, and passes through the corners.
 #[test]
 fn planes_go_through_their_corners() {
     check(1000, 4, &of_any_kind(SIZE), |t| {
@@ -109,7 +110,7 @@ fn planes_go_through_their_corners() {
         let middle = |f: fn(&oracle::Vertex) -> i64| t.iter().map(f).sum::<i64>() / 3;
         let mut places = t.map(|v| (v.x, v.y, v.z)).to_vec();
         let (x, y) = (middle(|v| v.x), middle(|v| v.y));
-        // A rounded middle may lie outside of a sliver, where the plain sum cancels.
+        // A rounded midpoint may be outside a sliver, where the plain sum cancels.
         let thick = area(&t).abs() > 1 << 20;
         places.extend(thick.then(|| (x, y, oracle::depth_at(&t, x, y))));
         match places.iter().find(|&&(x, y, z)| (plane_at(&t, x, y) - z).abs() > 1e-12 * z.abs()) {
@@ -119,7 +120,7 @@ fn planes_go_through_their_corners() {
     });
 }
 
-/// Vertices made to land on the grid do, and those between two points of it are doubtful.
+/// Vertices made to land on the grid do, and those halfway between two grid points are ambiguous.
 #[test]
 fn vertices_snap_to_the_grid() {
     check(1000, 5, &of_any_kind(SIZE), |t| {
@@ -129,7 +130,7 @@ fn vertices_snap_to_the_grid() {
                 if snapped(clip, SIZE, y_up) != Some(v) {
                     return Err(format!("{v:?} snaps to {:?}", snapped(clip, SIZE, y_up)));
                 }
-                // Half a unit on: x times 2 / 64 / 256 / 2.
+                // Half a unit further: x times 2 / 64 / 256 / 2.
                 let between = [clip[0] + clip[3] / 16_384.0, clip[1], 0.0, clip[3]];
                 if v.x.abs() < 1 << 14 && snapped(between, SIZE, y_up).is_some() {
                     return Err(format!("{v:?} and half a unit is not in doubt"));
@@ -145,7 +146,7 @@ fn units_in_the_last_place() {
     for x in [1.0f32, 1.5, 0.999_999_94, 3.0e-7, 1.0e30, f32::MIN_POSITIVE] {
         assert_eq!(ulp(x.into()), f64::from(x.next_up()) - f64::from(x), "{x}");
     }
-    // Between two numbers it is their distance.
+    // Between two numbers, it is their distance.
     assert_eq!(ulp(1.999_999_99), f64::from(f32::EPSILON));
     assert_eq!(ulp(2.0), 2.0 * f64::from(f32::EPSILON));
 }

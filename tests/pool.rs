@@ -1,5 +1,5 @@
-//! The pool of threads: the bits of one thread whatever the threads do, and no order of calls that hangs, loses
-//! something, or lets what was cleared hide anything.
+//! The thread pool: the same bits as one thread whatever the threads do, and no order of calls that hangs, loses
+//! anything, or lets cleared contents hide anything.
 
 mod scenes;
 
@@ -88,8 +88,8 @@ fn small_mesh(numbers: &mut Numbers) -> (Vec<f32>, Vec<u32>) {
     (flat, (1..n - 1).flat_map(|k| [0, k, k + 1]).collect())
 }
 
-/// Thousands of frames of small jobs with clears, resizes, merges, matrices and near planes in between, beside one object that is
-/// drawn into directly.
+/// Thousands of frames of small jobs, with clears, resizes, merges, matrices and near planes in between, alongside one
+/// object that is drawn into directly.
 fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
     let mut numbers = Numbers(seed);
     let meshes: Vec<_> = (0..64).map(|_| small_mesh(&mut numbers)).collect();
@@ -117,7 +117,8 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                         direct.clear_buffer();
                     }
                     2 => {
-                        // A column of tiles or of areas, too, of which several rows of bins are made.
+                        // Including a single column of tiles or of coarse cells, which is divided into several rows of
+                        // bins.
                         let sizes = [(200, 130), (640, 400), (33, 9), (257, 300), (20, 300), (120, 400)];
                         let (width, height) = sizes[numbers.next() as usize % sizes.len()];
                         pool.set_resolution(width, height).unwrap();
@@ -133,13 +134,13 @@ fn soak(seed: u64, threads: u32, max_jobs: u32, frames: usize) {
                     6 => pool.wake_threads(),
                     7 => pool.flush(),
                     8 => {
-                        // Nothing hides what is nearer than everything, at any moment.
+                        // Nothing ever hides a rectangle that is nearer than everything.
                         assert_eq!(pool.test_rect(-0.5, -0.5, 0.5, 0.5, 0.01), Ok(CullingResult::Visible));
                     }
                     _ => {
                         let (flat, triangles) = &meshes[numbers.next() as usize % meshes.len()];
                         let wider = Mat4::from_scale(Vec3::new(numbers.within(0.2, 1.5), 1.0, 1.0));
-                        // z of the mesh is 0, and its w comes as z.
+                        // z of the mesh is 0, and its w is passed as z.
                         let matrix = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1., 0., 0., 0., 0.];
                         let matrix = Mat4::from_cols_array(&matrix) * wider;
                         let space = match numbers.next().is_multiple_of(2) {
@@ -168,7 +169,7 @@ fn thousands_of_frames_have_the_bits_of_one_thread() {
     }
 }
 
-/// As long as POOL_SOAK_SECONDS says, from the seed in POOL_SOAK_SEED on; not at all without them.
+/// Runs for POOL_SOAK_SECONDS, from the seed in POOL_SOAK_SEED on; not at all if they are not set.
 #[test]
 fn a_soak_as_long_as_wanted() {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
@@ -203,7 +204,7 @@ fn what_was_cleared_hides_nothing_from_then_on() {
         draw_wall(&pool);
         pool.flush();
         assert_eq!(behind(&pool), CullingResult::Occluded, "frame {frame}");
-        // Suspended, nobody does the clear before it is asked for.
+        // While suspended, no thread performs the clear before the query.
         if frame % 2 == 0 {
             pool.suspend_threads();
         }
@@ -212,7 +213,7 @@ fn what_was_cleared_hides_nothing_from_then_on() {
         let wall = Vertices::new(&WALL, ClipSpaceLayout::XYZW).unwrap();
         let options = DrawOptions::default().with_winding(BackfaceWinding::None);
         assert_eq!(pool.test_triangles(wall, &TWO, &options), Ok(CullingResult::Visible), "frame {frame}");
-        // Found by the fuzzer: a triangle that passes by the corner of the screen, with a box that the wall hid.
+        // Found by the fuzzer: a triangle that passes the corner of the screen, with bounds that the wall hid.
         let passes = [9.6, 7.2, 0.0, 8.0, 7.2, 9.6, 0.0, 8.0, 9.6, 9.6, 0.0, 8.0];
         let passes = Vertices::new(&passes, ClipSpaceLayout::XYZW).unwrap();
         let result = pool.test_triangles(passes, &[0, 1, 2], &options).unwrap();
@@ -273,14 +274,14 @@ fn every_order_of_calls_is_defined() {
     assert!(pool.take_buffer().is_none());
     pool.wake_threads();
     pool.wake_threads();
-    // It gets another size through the pool.
+    // Its size is changed through the pool.
     pool.set_buffer(object(1, 1, 0.0, Settings::default()));
     pool.set_resolution(640, 400).unwrap();
     assert_eq!(pool.set_resolution(0, 400), Err(Error::InvalidSize));
     assert_eq!(pool.set_near_clip_plane(f32::NAN), Err(Error::InvalidNumber));
     pool.suspend_threads();
     pool.suspend_threads();
-    // More than there is room for, while nobody else works.
+    // More than there is room for, while no other thread works.
     for _ in 0..1000 {
         draw_wall(&pool);
         pool.clear_buffer().unwrap();

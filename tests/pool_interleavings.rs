@@ -1,6 +1,6 @@
-//! The pool's workers and schedule, as they are, under loom: every order in which threads can take turns (with a few
-//! switches between two waits), against a target that notes what it is given. Nothing hangs, nothing is lost, no two
-//! threads draw in a bin at once, and each bin draws in the order of submission.
+//! The pool's actual workers and schedule under loom: every interleaving of the threads (with a few switches between
+//! two waits), with a target that records its calls. Nothing hangs, nothing is lost, no two threads draw in a bin at
+//! once, and each bin draws in the order of submission.
 #![allow(dead_code, reason = "the two files are parts of a larger module")]
 
 #[path = "../src/pool/schedule.rs"]
@@ -9,7 +9,7 @@ mod schedule;
 mod workers;
 
 mod processor {
-    /// Where a thread runs changes nothing.
+    /// The processor on which a thread runs makes no difference.
     #[derive(Clone, Copy, PartialEq, Eq)]
     pub(super) struct Processor;
 
@@ -27,12 +27,12 @@ mod processor {
 mod sync {
     pub(super) use loom::sync::{Arc, Condvar, Mutex, MutexGuard};
 
-    /// Callers are not told apart.
+    /// Callers are not distinguished.
     pub(super) fn external_thread() -> usize {
         usize::MAX
     }
 
-    /// Nobody waits a moment: all go to sleep, or look again when they find that something was finished.
+    /// No spinning: threads go to sleep at once, or check again if something was finished.
     #[derive(Default)]
     pub(super) struct SpinWait(loom::sync::atomic::AtomicU64);
 
@@ -50,7 +50,7 @@ mod sync {
 }
 
 mod sink {
-    /// The numbers of calls instead of triangles.
+    /// Call numbers instead of triangles.
     #[derive(Default)]
     pub struct BinnedTriangles(pub Vec<u32>);
 
@@ -162,11 +162,11 @@ use target::{Call, Target, Work};
 use workers::Workers;
 
 fn call(number: u32) -> Call {
-    // Each fills a batch.
+    // Each call fills a batch.
     Call { number, indices: 3 * schedule::BATCH_WEIGHT, clears: 0 }
 }
 
-/// So small that no thread is woken for it while another is awake.
+/// A call so small that no thread is woken for it while another is awake.
 fn small(number: u32) -> Call {
     Call { number, indices: 3, clears: 0 }
 }
@@ -180,12 +180,12 @@ fn clear(workers: &Workers, target: &Target) {
     );
 }
 
-/// Plays what a program does in every order, with this many threads, bins and batches.
+/// Runs a program in every interleaving, with this many threads, bins and batches.
 fn explore(threads: usize, bins: usize, max_jobs: usize, program: fn(&Workers, &Target), expected: &'static [u32]) {
     let mut model = loom::model::Builder::new();
     model.preemption_bound = Some(2);
     model.max_branches = 50_000;
-    // A bound for slow machines; what is left out then was not reached, and nothing else changes.
+    // A limit for slow machines; it only skips the remaining interleavings.
     model.max_duration = Some(std::time::Duration::from_secs(15));
     model.check(move || {
         let workers = Arc::new(Workers::new(max_jobs));
@@ -244,7 +244,7 @@ fn two_may_submit_and_flush() {
         workers.set_suspended(false);
         workers.submit(call(1), true);
         workers.flush();
-        // What was submitted before is drawn now, whatever others submit meanwhile.
+        // Everything submitted earlier is drawn by now, whatever others submit meanwhile.
         assert_eq!(*target.drawn[0].lock().unwrap(), [1]);
         workers.submit(call(2), true);
         clear(workers, target);
@@ -265,7 +265,7 @@ fn what_is_submitted_to_awake_threads_needs_no_other_call() {
     explore(1, 1, 2, program, &[1, 2]);
     explore(2, 1, 2, program, &[1, 2]);
     explore(1, 2, 2, program, &[1, 2]);
-    // Submitted before the threads wake, and to a workers with no room.
+    // Submitted before the threads wake, while there is no room.
     let program = |workers: &Workers, target: &Target| {
         workers.submit(small(1), true);
         workers.set_suspended(false);
@@ -284,7 +284,7 @@ fn a_thread_of_the_program_may_do_the_work() {
         workers.set_suspended(false);
         workers.submit(small(2), true);
         while workers.work_once() {}
-        // Other threads may be working on what is left.
+        // Other threads may still be working on the rest.
         target.wait(2 * target.bins());
         workers.flush();
         assert!(workers.is_done() && !workers.work_once());

@@ -1,6 +1,6 @@
-//! Programs that are compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): what they call, what they define, and that all
-//! names of the library's functions are free for the program. `.ci/prefix` builds such a library, then links and runs programs
-//! with it.
+//! Programs compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): the symbols that they call and define, and that
+//! all names of the library's functions are free for the program. `.ci/prefix` builds such a library, then links and
+//! runs programs with it.
 #![cfg(all(target_os = "linux", feature = "capi"))]
 
 mod native;
@@ -33,7 +33,7 @@ fn compile(file: &Path, text: &str, flags: &[&str]) -> Result<String, String> {
     native::run(command.arg("-c").arg(file).arg("-o").arg(file.with_extension("o")))
 }
 
-/// The symbols of an object file: those it defines and those it references.
+/// The symbols that an object file defines and references.
 fn symbols(object: &Path) -> (BTreeSet<String>, BTreeSet<String>) {
     let list = |kind| {
         let mut command = Command::new("nm");
@@ -51,7 +51,7 @@ fn library_functions() -> Vec<String> {
     names
 }
 
-/// A program may define each of them in the file that includes the headers, with any arguments.
+/// A program may define all of these names in the file that includes the headers, with any arguments.
 #[test]
 fn every_name_of_the_library_is_free() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -78,7 +78,8 @@ fn every_name_of_the_library_is_free() {
     assert!(error.contains("conflicting types for"), "{error}");
 }
 
-/// The linker merges inline functions of the same name, so files for two copies of the library must have none in common.
+/// The linker merges inline functions of the same name, so object files for two copies of the library must have none in
+/// common.
 #[test]
 fn files_for_two_copies_share_no_function_of_the_library() {
     let folder = tempfile::tempdir().expect("a temporary folder");

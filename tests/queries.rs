@@ -1,5 +1,5 @@
-//! Occludees anywhere, with any w, unsnapped, clipped or not: no point of one that an exact buffer shows may be
-//! called hidden or out of view.
+//! Occludees anywhere, with any w, unsnapped, clipped or not: if an exact buffer shows any point of one, it must not be
+//! reported hidden or out of view.
 
 mod oracle;
 mod support;
@@ -15,7 +15,7 @@ use support::{AXES, RULES, check, draw, name, object, test_clip};
 const SIZE: (usize, usize) = (128, 64);
 const NEAR: f32 = 0.1;
 
-/// The pixel that a clip-space point shows in, if it is on the screen and not within a hair of a pixel's edge.
+/// The pixel in which a clip-space point is visible, if it is on the screen and not too close to a pixel's edge.
 fn pixel([x, y, w]: [f64; 3], axis: YAxis) -> Option<usize> {
     let column = (x / w * 0.5 + 0.5) * SIZE.0 as f64;
     let y = if axis == YAxis::Up { y } else { -y };
@@ -31,7 +31,7 @@ fn points(t: &[[f32; 3]; 3]) -> impl Iterator<Item = [f64; 3]> {
     let wide = t.map(|v| v.map(f64::from));
     (0..=STEPS).flat_map(move |i| {
         (0..=STEPS - i).map(move |j| {
-            // Kept off the edges by a little, in which a point belongs to the triangle without doubt.
+            // Slightly off the edges, so that a point belongs to the triangle without doubt.
             let weight = |n: i32| (f64::from(n) + 1e-5) / (f64::from(STEPS) + 3e-5);
             let weights = [weight(i), weight(j), weight(STEPS - i - j)];
             [0, 1, 2].map(|k| (0..3).map(|c| wide[c][k] * weights[c]).sum())
@@ -61,7 +61,7 @@ fn ask(moc: &MaskedOcclusionCulling, exact: &Oracle, t: &[[f32; 3]; 3]) -> Resul
     Ok(())
 }
 
-/// Occluders are large and near, so that most of the screen is hidden and answers differ.
+/// Occluders are large and near, so that most of the screen is hidden and answers vary.
 fn occluders() -> impl Strategy<Value = Vec<Triangle>> {
     proptest::collection::vec(prop_oneof![of_kind(Kind::PartlyOff, SIZE), of_kind(Kind::Uniform, SIZE)], 4..20)
 }
@@ -117,7 +117,7 @@ fn tiny_occludees() {
 fn poles_and_planks() {
     let thin = |x: f32, y: f32| {
         around(-0.5..0.5f32, 1.0..80.0).prop_map(move |t| {
-            // Squeezed towards its first corner.
+            // Shrunk towards its first corner.
             let (x0, y0) = (t[0][0] / t[0][2], t[0][1] / t[0][2]);
             t.map(|[px, py, w]| [(x0 + (px / w - x0) * x) * w, (y0 + (py / w - y0) * y) * w, w])
         })

@@ -1,5 +1,5 @@
-//! The tightest case for a query: a wall hides all of an occludee but the part in one block of 8x4 pixels, and there the
-//! wall stands just behind the occludee's nearest point. That point shows, so the answer is never hidden.
+//! The tightest case for a query: a wall hides all of an occludee except the part in one block of 8x4 pixels, where the
+//! wall is just behind the occludee's nearest point. That point is visible, so the answer must never be hidden.
 
 mod oracle;
 mod support;
@@ -16,7 +16,7 @@ use support::{AXES, RULES, check, draw, name, object, test_clip};
 const SIZE: (usize, usize) = (64, 32);
 const BLOCK: (usize, usize) = (8, 4);
 
-/// x and y in pixels, rows counted as the object does, and 1/w.
+/// x and y in pixels, with the object's row direction, and 1/w.
 type Point = [f64; 3];
 
 fn to_screen([x, y, w]: [f32; 3], axis: YAxis) -> Point {
@@ -25,7 +25,7 @@ fn to_screen([x, y, w]: [f32; 3], axis: YAxis) -> Point {
     [(x / w * 0.5 + 0.5) * SIZE.0 as f64, (y / w * 0.5 + 0.5) * SIZE.1 as f64, 1.0 / w]
 }
 
-/// What of a polygon lies where `sign` times the coordinate is at least `sign` times `bound`.
+/// The part of a polygon in which `sign` times the coordinate is at least `sign` times `bound`.
 fn cut(polygon: &[Point], coordinate: usize, sign: f64, bound: f64) -> Vec<Point> {
     let mut out = Vec::new();
     for (i, a) in polygon.iter().enumerate() {
@@ -43,7 +43,7 @@ fn cut(polygon: &[Point], coordinate: usize, sign: f64, bound: f64) -> Vec<Point
     out
 }
 
-/// The nearest 1/w of a triangle in a block, well inside of the block's edges.
+/// The nearest 1/w of a triangle within a block, well away from the block's edges.
 fn nearest_in(t: &[Point; 3], block: (usize, usize)) -> Option<f64> {
     const INSIDE: f64 = 1e-4;
     let mut polygon = t.to_vec();
@@ -61,7 +61,7 @@ fn rectangle(x: (usize, usize), y: (usize, usize), z: f64) -> [Triangle; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Hides everything outside of one block with `near`, and that block with `z`.
+/// Hides everything outside one block with `near`, and that block with `z`.
 fn walls(moc: &mut MaskedOcclusionCulling, block: (usize, usize), z: f64, near: f64) {
     let (x0, y0) = (block.0 * BLOCK.0, block.1 * BLOCK.1);
     let (x1, y1) = (x0 + BLOCK.0, y0 + BLOCK.1);
@@ -84,12 +84,12 @@ fn compare(moc: &mut MaskedOcclusionCulling, v: &[[f32; 3]; 3], block: (usize, u
     let screen = v.map(|v| to_screen(v, moc.y_axis()));
     let Some(nearest) = nearest_in(&screen, block) else { return Ok(()) };
     let clip = v.map(|[x, y, w]| [x, y, 0.0, w]);
-    // Behind by what 1/w and back loses in single precision, and no more.
+    // Behind by what converting to 1/w and back loses in single precision, and no more.
     walls(moc, block, nearest * (1.0 - 4e-7), 4.0);
     if test_clip(moc, &clip) != CullingResult::Visible {
         return Err(format!("{}: in block {block:?} it shows at {nearest:e}\n{v:?}", name(moc)));
     }
-    // In front of all its corners it hides it.
+    // A wall in front of all its corners hides it.
     let corner = screen.iter().map(|p| p[2]).fold(0.0, f64::max);
     walls(moc, block, corner * 1.001, 4.0);
     if test_clip(moc, &clip) == CullingResult::Visible {
@@ -134,7 +134,8 @@ fn occludees_that_leave_the_screen() {
     run(1000, 5, (-40.0..40.0f32, -40.0..40.0f32, 0.3..3.0f32).prop_map(|(x, y, w)| [x * w, y * w, w]));
 }
 
-/// Walls left and right of a gap in pixels of a screen, as an object of another size sees what is behind it.
+/// Walls left and right of a gap given in pixels of a screen: the answer of an object of another size for a rectangle
+/// behind it.
 fn behind_a_gap((width, height): (u32, u32), screen: f32, gap: (f32, f32), rectangle: (f32, f32)) -> CullingResult {
     let mut moc = MaskedOcclusionCulling::new(width, height, Settings::default()).unwrap();
     let ndc = |pixel: f32| pixel / screen * 2.0 - 1.0;
@@ -145,26 +146,26 @@ fn behind_a_gap((width, height): (u32, u32), screen: f32, gap: (f32, f32), recta
     moc.test_rect(ndc(rectangle.0), -0.5, ndc(rectangle.1), 0.5, 2.0)
 }
 
-/// What docs/guide.md says of buffers smaller than the screen: the limit of the promise.
+/// The limit of the guarantee in buffers smaller than the screen, as described in docs/guide.md.
 #[test]
 fn a_gap_closes_in_a_buffer_whose_pixels_are_wider() {
     let (screen, gap) = (1920.0, (600.5, 605.5));
     let behind = (500.0, 700.0);
     assert_eq!(behind_a_gap((1920, 1080), screen, gap, behind), CullingResult::Visible);
-    // A pixel of this buffer is six of the screen's: its centres are at 597 and 603, and at 603 the gap is open.
+    // A pixel of this buffer is six screen pixels wide: it has centres at 597 and 603, and the gap is open at 603.
     assert_eq!(behind_a_gap((320, 180), screen, gap, behind), CullingResult::Visible);
-    // Between two centres.
+    // The gap is between two centres.
     assert_eq!(behind_a_gap((320, 180), screen, (597.5, 602.5), behind), CullingResult::Occluded);
     assert_eq!(behind_a_gap((640, 360), screen, (597.5, 602.5), behind), CullingResult::Visible);
 }
 
-/// The guide's remedy for straight silhouettes: a rectangle that is one buffer pixel larger on each side.
+/// The guide's remedy for straight silhouettes: a rectangle enlarged by one buffer pixel on each side.
 #[test]
 fn a_larger_rectangle_makes_up_for_a_straight_edge_between_pixel_centres() {
     let (screen, pixel) = (1920.0, 6.0);
     let mut culled = 0;
     for step in 0..48 {
-        // The right wall begins beyond the screen.
+        // The right wall begins outside the screen.
         let gap = (600.0 + step as f32 / 8.0, 3000.0);
         let sticks_out = (500.0, gap.0 + 0.25);
         culled += u32::from(behind_a_gap((320, 180), screen, gap, sticks_out) == CullingResult::Occluded);

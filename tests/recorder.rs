@@ -1,5 +1,5 @@
-//! Recordings: to the byte what the format says, played again with the answers and the depths that were there, and
-//! refused where they are cut or broken.
+//! Recordings match the format to the byte, replay with the same answers and depths, and are rejected if truncated or
+//! corrupt.
 
 use fastrand::Rng;
 use masked_occlusion_culling::{
@@ -43,7 +43,7 @@ fn replay(recording: &Recording) -> (MaskedOcclusionCulling, usize) {
     (moc, differ)
 }
 
-/// Random triangles before the eye, in one of several layouts.
+/// Random triangles in front of the eye, in one of several layouts.
 struct RandomMesh {
     data: Vec<f32>,
     space: VertexSpace,
@@ -71,7 +71,7 @@ impl RandomMesh {
             data[at + y as usize / 4] = side * (2.4 * random.f32() - 1.2);
             data[at + zw as usize / 4] = if with_matrix { -w } else { w };
         }
-        // Not from the first vertex on.
+        // Does not start at the first vertex.
         let low = random.u32(0..count as u32 - 2);
         let triangles = (0..3 * random.usize(0..12)).map(|_| random.u32(low..count as u32)).collect();
         // w is -z, plus a bit.
@@ -121,7 +121,7 @@ fn what_was_recorded_is_played_with_the_same_answers_and_depths() {
                     answers.push(moc.test_rect(x, y, x + 0.2, y + 0.2, 20.0 * random.f32()));
                 }
             }
-            // What is refused is not recorded.
+            // A rejected call is not recorded.
             let bad = moc.render_triangles(mesh.vertices(), &[0, 1, u32::MAX], &mesh.options);
             assert_eq!(bad, Err(Error::IndexOutOfRange));
         }
@@ -139,7 +139,7 @@ fn what_was_recorded_is_played_with_the_same_answers_and_depths() {
     assert!(seen[0] > 100 && seen[1] > 20 && seen[3] > 100, "{seen:?}");
 }
 
-/// The words of a recording, written by hand.
+/// Appends words of a recording written by hand.
 fn words(bytes: &mut Vec<u8>, words: &[u32]) {
     bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
 }
@@ -217,7 +217,7 @@ fn a_cut_file_is_refused_wherever_it_is_cut() {
             other => panic!("cut at {len}: {other:?}"),
         }
     }
-    // What follows the end does not matter.
+    // Anything after the end is ignored.
     let longer = [bytes.as_slice(), b"more"].concat();
     assert_eq!(Recording::from_bytes(&longer).unwrap(), Recording::from_bytes(&bytes).unwrap());
 }
@@ -255,7 +255,7 @@ fn what_is_broken_is_refused_or_can_be_played() {
             broken[at] = if random.bool() { random.u8(..) } else { broken[at] ^ 1 << random.u8(0..8) };
         }
         match Recording::from_bytes(&broken) {
-            // A large buffer takes its time, and tells nothing.
+            // A large buffer takes long and reveals nothing.
             Ok(recording) if recording.resolution.0 * recording.resolution.1 > 1 << 20 => {}
             Ok(recording) => {
                 replay(&recording);
@@ -279,7 +279,7 @@ fn starting_and_stopping_at_any_time_is_defined() {
     assert!(matches!(moc.recorder_start(&b), Err(RecordingError::Busy)));
     assert!(!b.exists());
     moc.clear_buffer();
-    // The same size clears; the same near plane is no other one.
+    // Setting the same size only clears; setting the same near plane changes nothing.
     moc.set_resolution(16, 16).unwrap();
     moc.set_near_clip_plane(0.0).unwrap();
     moc.recorder_stop().unwrap();
@@ -287,7 +287,7 @@ fn starting_and_stopping_at_any_time_is_defined() {
     moc.recorder_stop().unwrap();
     assert_eq!(Recording::load(&a).unwrap().calls, [RecordedCall::ClearBuffer, RecordedCall::ClearBuffer]);
 
-    // Until there is something in the file, its header waits for what is set.
+    // The header is not written before the first call, so the settings can still change.
     moc.recorder_start(&a).unwrap();
     moc.set_near_clip_plane(0.125).unwrap();
     moc.set_resolution(24, 8).unwrap();
@@ -328,7 +328,7 @@ fn a_file_that_cannot_be_read_or_is_none_says_so() {
     }
 }
 
-/// Stride 0: all vertices are one, and there may be more of them than the format can count.
+/// Stride 0: all vertices are the same one, and there may be more of them than the format can count.
 #[cfg(feature = "capi")]
 #[test]
 fn a_mesh_that_is_too_large_for_the_format_ends_a_recording_that_stays_whole() {
@@ -341,7 +341,7 @@ fn a_mesh_that_is_too_large_for_the_format_ends_a_recording_that_stays_whole() {
     moc.clear_buffer();
     let (vertex, triangle) = ([0.0f32, 0.0, 0.0, 1.0], [0, 1, u32::MAX]);
     let layout = capi::MOC_VertexLayout { stride: 0, offset_y: 4, offset_zw: 12 };
-    // SAFETY: a live object; every vertex is the one that is there.
+    // SAFETY: a live object; every index refers to the only vertex.
     let status = unsafe {
         let (vertex, triangle) = (vertex.as_ptr(), triangle.as_ptr());
         capi::MOC_RecordRenderTriangles(moc, vertex, triangle, 1, core::ptr::null(), 0, 0x1f, &layout, -1)
@@ -363,7 +363,7 @@ fn a_full_disk_is_told_when_the_recording_ends() {
         moc.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options).unwrap();
     }
     assert!(matches!(moc.recorder_stop(), Err(RecordingError::File(_))));
-    // It was told; there is nothing more to stop.
+    // The error was reported; there is nothing left to stop.
     moc.recorder_stop().unwrap();
 }
 
@@ -387,7 +387,8 @@ fn what_a_pool_is_told_is_recorded_in_order() {
             // SAFETY: the meshes live until the flush.
             unsafe { pool.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options) }.unwrap();
             if k % 5 == 4 {
-                // In the middle of drawing an answer may be another one than later, and is not recorded as one.
+                // While drawing is in progress the answer may differ from a later one, so it is not recorded as
+                // certain.
                 pool.test_rect(-0.5, -0.5, 0.0, 0.0, 9.0).unwrap();
             }
         }
@@ -403,7 +404,7 @@ fn what_a_pool_is_told_is_recorded_in_order() {
     }
 }
 
-/// What is asked while something is drawn is not recorded as certain, however soon it is done afterwards.
+/// A query during drawing is not recorded as certain, however soon afterwards the drawing is finished.
 #[test]
 fn no_answer_of_a_pool_is_recorded_that_may_be_another_one_later() {
     let folder = Folder::new();
@@ -415,14 +416,14 @@ fn no_answer_of_a_pool_is_recorded_that_may_be_another_one_later() {
     let both_sides = DrawOptions::default().with_winding(BackfaceWinding::None);
     let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(1).with_max_jobs(8)).unwrap();
     pool.wake_threads();
-    // Without care one of some hundreds.
+    // Without this precaution one in a few hundred would fail.
     for _ in 0..1000 {
         let moc = object(300, 200);
         moc.recorder_start(&path).unwrap();
         pool.set_buffer(moc);
         pool.clear_buffer().unwrap();
         let meshes: Vec<_> = (0..random.usize(0..40)).map(|_| RandomMesh::new(&mut random)).collect();
-        // SAFETY: the meshes live until the object is taken back, which flushes.
+        // SAFETY: the meshes live until the object is returned, which flushes.
         unsafe {
             for mesh in &meshes {
                 pool.render_triangles(mesh.vertices(), &mesh.triangles, &mesh.options).unwrap();
@@ -436,14 +437,14 @@ fn no_answer_of_a_pool_is_recorded_that_may_be_another_one_later() {
     }
 }
 
-/// However threads take turns, the file has their calls in the order in which they are drawn.
+/// Whatever the interleaving of threads, the file lists their calls in drawing order.
 #[test]
 fn what_several_threads_submit_is_recorded_as_it_is_drawn() {
     let folder = Folder::new();
     let path = folder.file("threads.mocrec");
     let wall = [[-9.0f32, -9.0, 0.0, 3.0], [9.0, -9.0, 0.0, 3.0], [0.0, 9.0, 0.0, 3.0]];
     let both_sides = DrawOptions::default().with_winding(BackfaceWinding::None);
-    // Without care one of some thousands.
+    // Without this precaution one in a few thousand would fail.
     for _ in 0..2000 {
         let moc = object(64, 64);
         moc.recorder_start(&path).unwrap();
@@ -455,7 +456,7 @@ fn what_several_threads_submit_is_recorded_as_it_is_drawn() {
         std::thread::scope(|threads| {
             threads.spawn(|| {
                 for _ in 0..10 {
-                    // SAFETY: all of it lives until the object is taken back, which flushes.
+                    // SAFETY: all of it lives until the object is returned, which flushes.
                     unsafe { pool.render_triangles(Vertices::clip_space(&wall), &[0, 1, 2], &both_sides) }.unwrap();
                 }
             });
@@ -469,7 +470,7 @@ fn what_several_threads_submit_is_recorded_as_it_is_drawn() {
     }
 }
 
-/// A call may take a byte of the file, and must not take so much memory that a small file exhausts it.
+/// A call may occupy a single byte of the file, and must not need so much memory that a small file exhausts it.
 #[test]
 fn what_a_file_takes_in_memory_is_bounded() {
     assert!(size_of::<RecordedCall>() <= 32, "{}", size_of::<RecordedCall>());
@@ -480,7 +481,7 @@ fn what_a_file_takes_in_memory_is_bounded() {
     assert_eq!(Recording::from_bytes(&clears).unwrap().calls.len(), 1 << 20);
 }
 
-/// Frames that the library recorded that this one stands in for, where they are at hand.
+/// Frames recorded by Intel's library, if available.
 #[test]
 fn recordings_of_others_play_with_their_answers() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");

@@ -1,4 +1,4 @@
-//! What is refused, with which error, and that nothing is drawn or changed then.
+//! Which calls are rejected, with which error, and that they draw and change nothing.
 
 use masked_occlusion_culling::{
     ClipSpaceLayout,
@@ -33,7 +33,7 @@ fn sizes_that_no_object_can_have() {
 fn indices_out_of_range_draw_nothing() {
     every(|mut moc| {
         let (vertices, options) = (Vertices::clip_space(&TRIANGLE), DrawOptions::default());
-        // The bad index at every place of meshes of many lengths, so that every lane of the scan sees it.
+        // The bad index at every position in meshes of many lengths, so that every lane of the scan sees it.
         for triangles in [1, 2, 5, 6, 11, 43] {
             for place in 0..triangles * 3 {
                 for bad in [3, 4, 0x8000_0000, u32::MAX] {
@@ -124,7 +124,7 @@ fn the_instruction_set_is_capped_by_the_argument() {
         }
         assert_eq!(Implementation::Sse2.capped(), Implementation::Sse2);
     }
-    // An instruction set of another architecture permits all: programs written for x86-64 ask for AVX-512 everywhere.
+    // An instruction set of another architecture is no limit: programs written for x86-64 ask for AVX-512 everywhere.
     use Implementation::*;
     let foreign: &[Implementation] = match std::env::consts::ARCH {
         "x86_64" => &[Neon, Simd128],
@@ -143,7 +143,7 @@ fn what_faces_away_or_lies_outside_is_view_culled() {
     every(|mut moc| {
         let options = DrawOptions::default();
         let vertices = Vertices::clip_space(&TRIANGLE);
-        // Clockwise in normalised device coordinates, y up, faces away.
+        // Clockwise in normalised device coordinates, y up, is back-facing.
         assert_eq!(moc.render_triangles(vertices, &[0, 2, 1], &options), Ok(ViewCulled));
         assert_eq!(moc.test_triangles(vertices, &[0, 2, 1], &options), Ok(ViewCulled));
         for [x, y, w] in [[5.0, 0.0, 1.0], [-5.0, 0.0, 1.0], [0.0, 5.0, 1.0], [0.0, -5.0, 1.0], [0.0, 0.0, -5.0]] {

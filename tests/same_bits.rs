@@ -1,6 +1,6 @@
-//! Buffer, answers and statistics are the same bits on every instruction set, and the same on every architecture:
-//! the hashes of generated scenes are equal and are those in this file. A change that means to change the bits
-//! prints the new ones with PRINT_HASHES=1 cargo test --test same_bits -- --nocapture.
+//! Buffer, answers and statistics have the same bits on every instruction set and on every architecture: the hashes of
+//! generated scenes are equal to each other and to those in this file. For a change that is meant to change the bits,
+//! print the new hashes with PRINT_HASHES=1 cargo test --test same_bits -- --nocapture.
 
 mod scenes;
 
@@ -145,7 +145,8 @@ fn every_instruction_set_gives_the_golden_bits() {
     assert!(wrong.is_empty(), "other hashes than those in this file:\n{}", wrong.join("\n"));
 }
 
-/// What differs, pixel by pixel, when the hashes do: the first object whose drawing parts two instruction sets.
+/// If the hashes differ, shows where, pixel by pixel: the first object that is drawn differently on two instruction
+/// sets.
 #[test]
 fn every_instruction_set_agrees_after_every_object() {
     let (w, h) = (160, 90);
@@ -209,7 +210,7 @@ fn every_instruction_set_agrees_after_every_object() {
     }
 }
 
-/// Triangles as wide as large screens, many a call: more tiles than the kernel's lists hold at a time.
+/// Triangles as wide as large screens, many per call: more tiles than the kernel's lists hold at a time.
 #[test]
 fn every_instruction_set_agrees_on_wide_triangles() {
     for (w, h) in [(1920, 1080), (5000, 300), (300, 5000), (2560, 1440)] {
@@ -220,7 +221,7 @@ fn every_instruction_set_agrees_on_wide_triangles() {
             bits ^= bits << 17;
             (bits >> 40) as f32 / (1 << 24) as f32
         };
-        // A wall of two triangles, then others before and behind it, from corner to corner.
+        // A wall of two triangles, then others in front of and behind it, from corner to corner.
         let mut vertices = vec![];
         for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
             vertices.push([x * 10.0, y * 10.0, 0.0, 10.0]);

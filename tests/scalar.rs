@@ -1,4 +1,4 @@
-//! A few draws and queries on the plain path alone, small enough to run under Miri or valgrind.
+//! A few draws and queries with the scalar code only, small enough to run under Miri or valgrind.
 
 use masked_occlusion_culling::{
     BackfaceWinding, ClipSpaceLayout, CullingResult::*, DrawOptions, Error, Implementation, MaskedOcclusionCulling,
@@ -43,7 +43,7 @@ fn triangle(corners: [[f32; 3]; 3]) -> [[f32; 4]; 3] {
 
 #[test]
 fn a_right_triangle_covers_its_pixels() {
-    // Legs of 20 along pixel edges: of each row one pixel less, the diagonal through centres belongs to one side.
+    // Legs of 20 along pixel edges: each row has one pixel less, and the diagonal through centres belongs to one side.
     every(|mut moc| {
         let t = triangle([[10.0, 5.0, 2.0], [30.0, 5.0, 2.0], [10.0, 25.0, 2.0]]);
         let other = triangle([[30.0, 25.0, 2.0], [30.0, 5.0, 2.0], [10.0, 25.0, 2.0]]);
@@ -82,7 +82,7 @@ fn clipped_and_hostile_triangles() {
         moc.set_near_clip_plane(0.1).unwrap();
         let nan = f32::NAN;
         let vertices = [
-            // Crosses the near plane, crosses the eye, leaves every guard band, and what is no triangle at all.
+            // Crosses the near plane, crosses the eye's plane, leaves every guard band, and one that is degenerate.
             [[-1.0, -1.0, 0.0, -2.0], [1.0, -1.0, 0.0, 3.0], [0.0, 1.0, 0.0, 3.0]],
             [[0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 3.0], [0.0, 1.0, 0.0, 3.0]],
             [[-1e7, -1.0, 0.0, 1.0], [1e7, -1.0, 0.0, 2.0], [0.0, 1e7, 0.0, 1.0]],
@@ -131,7 +131,7 @@ fn bins_merging_and_transforming() {
     });
 }
 
-/// Also at the far corner, where there is no tile that could be looked at.
+/// Also at the far corner, where there is no tile to read.
 #[test]
 fn an_empty_scissor_draws_nothing() {
     every(|mut moc| {

@@ -1,5 +1,5 @@
-//! Triangles that share edges never both cover a pixel and never leave one out: each is drawn into a clear
-//! buffer, and together they must cover what the polygon around them covers, every pixel once.
+//! Triangles that share edges never both cover a pixel and never leave one out: each is drawn into a clear buffer, and
+//! together they must cover every pixel of the polygon around them exactly once.
 
 mod oracle;
 mod support;
@@ -31,7 +31,7 @@ fn times_covered(moc: &mut MaskedOcclusionCulling, triangles: &[Triangle]) -> Ve
     times
 }
 
-/// The outline's own coverage, which knows nothing of the inner edges.
+/// The outline's own coverage, which is independent of the inner edges.
 fn outline_covers(outline: &[Point], size: (usize, usize)) -> Vec<u8> {
     let mut cover = vec![0; size.0 * size.1];
     for row in 0..size.1 {
@@ -67,14 +67,14 @@ fn compare(
     }
 }
 
-/// A point in units; `coarse` ones lie on the grid of half pixels, where ties are.
+/// A point in units; `coarse` ones are on the grid of half pixels, where ties occur.
 fn point(size: (usize, usize), coarse: bool) -> impl Strategy<Value = Point> + Clone {
     let step = if coarse { UNIT / 2 } else { 1 };
     let axis = move |n: usize| (-(UNIT * 4) / step..=(n as i64 + 4) * UNIT / step).prop_map(move |v| v * step);
     (axis(size.0), axis(size.1))
 }
 
-/// Which side of the line from a to b is p on?
+/// On which side of the line from a to b is p?
 fn side(a: Point, b: Point, p: Point) -> i64 {
     ((b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0)).signum()
 }
@@ -86,7 +86,7 @@ fn pairs(size: (usize, usize), coarse: bool, cases: u32) {
         if side(a, c, b) * side(a, c, d) >= 0 {
             return Ok(());
         }
-        // The order of the corners, and so the direction in which each edge is walked, must not matter.
+        // The order of the corners, and so the direction in which each edge is traversed, must not matter.
         for halves in [[flat(a, b, c), flat(a, c, d)], [flat(c, a, b), flat(d, c, a)], [flat(b, a, c), flat(a, c, d)]] {
             state.borrow_mut().iter_mut().try_for_each(|moc| compare(moc, &halves, &[a, b, c, d], size))?;
         }

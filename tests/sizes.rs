@@ -1,4 +1,4 @@
-//! Every size from 1 to 16,384, partial tiles at the border, reading back, scissor rectangles and bin sizes.
+//! Every size from 1 to 16,384, partial tiles at the edge, reading back, scissor rectangles and bin sizes.
 
 mod oracle;
 mod support;
@@ -21,7 +21,7 @@ fn every(size: (usize, usize), mut test: impl FnMut(MaskedOcclusionCulling)) {
     }
 }
 
-/// A wall covers every pixel, at its depth or a little farther.
+/// A wall covers every pixel, at its depth or slightly farther.
 fn assert_covered(moc: &MaskedOcclusionCulling, w: f32) {
     let wrong = |d: &f32| !(*d <= 1.0 / w && *d >= 0.999 / w);
     if let Some(i) = depth(moc).iter().position(wrong) {
@@ -65,12 +65,12 @@ fn other_sizes_are_refused_and_the_buffer_stays() {
 #[test]
 fn the_largest_size_works() {
     let mut moc = MaskedOcclusionCulling::new(MAX, MAX, Settings::default()).unwrap();
-    // A quad with one corner of the screen left free.
+    // A quad that leaves one corner of the screen free.
     let quad = [[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [-1.0, 1.0, 0.0, 1.0]];
     draw_clip(&mut moc, &quad);
     assert_eq!(moc.test_rect(-1.0, -1.0, -0.1, -0.1, 2.0), Occluded);
     assert_eq!(moc.test_rect(0.1, 0.1, 1.0, 1.0, 2.0), Visible);
-    // One pixel to each side of the diagonal.
+    // One pixel on each side of the diagonal.
     let pixel = 2.0 / MAX as f32;
     assert_eq!(moc.test_rect(-3.0 * pixel, -3.0 * pixel, -2.0 * pixel, -2.0 * pixel, 2.0), Occluded);
     assert_eq!(moc.test_rect(2.0 * pixel, 2.0 * pixel, 3.0 * pixel, 3.0 * pixel, 2.0), Visible);
@@ -157,7 +157,7 @@ fn scissor_rectangles_are_honoured_exactly() {
         [0, 40, 200, 45],
         [96, 16, 160, 40],
         [0, 8, 192, 16],
-        // To the end of the last tiles, though the screen ends before.
+        // To the end of the last tiles, though the screen ends before that.
         [192, 40, 224, 48],
         // Empty.
         [64, 8, 64, 16],

@@ -1,4 +1,4 @@
-//! Statistics count what they say, and the same on every instruction set, however long the calls are.
+//! Statistics count what their documentation says, identically on every instruction set, however long the calls are.
 
 mod scenes;
 
@@ -44,7 +44,7 @@ fn assert_equal(scene: &Scene, objects: &[MaskedOcclusionCulling], when: &str) {
     }
 }
 
-/// Thousands of triangles in a call: how many are taken at a time must not show.
+/// Thousands of triangles per call: how many are processed at a time must make no difference.
 fn long_calls(call: impl Fn(&mut MaskedOcclusionCulling, Vertices<'_>, &[u32], &DrawOptions)) {
     for scene in scenes::all() {
         let all = scene.objects.concat();
@@ -68,7 +68,7 @@ fn long_draws_count_the_same_everywhere() {
 
 #[test]
 fn long_queries_count_the_same_everywhere() {
-    // Of an empty buffer at first, then of one that hides more and more.
+    // With an empty buffer at first, then with one that hides more and more.
     long_calls(|moc, vertices, all, options| {
         moc.test_triangles(vertices, all, options).unwrap();
         moc.render_triangles(vertices, &all[..all.len() / 6 * 3], options).unwrap();
@@ -102,7 +102,7 @@ fn counts_are_what_was_asked() {
         .unwrap();
         let wall = [[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0], [f32::NAN; 4]];
         let vertices = Vertices::clip_space(&wall);
-        // One that faces the eye, one that faces away, one that is no triangle.
+        // One front-facing, one back-facing, one degenerate.
         moc.render_triangles(vertices, &[0, 1, 2, 0, 2, 1, 0, 1, 3], &DrawOptions::default()).unwrap();
         let drawn = moc.statistics().occluders;
         assert_eq!((drawn.num_processed_triangles, drawn.num_rasterized_triangles), (3, 1));
@@ -114,7 +114,7 @@ fn counts_are_what_was_asked() {
         let tested = moc.statistics().occludees;
         assert_eq!((tested.num_processed_rectangles, tested.num_processed_triangles), (2, 2));
         assert_eq!(moc.statistics().occluders, drawn);
-        // They are of the object's whole life, not of a frame.
+        // They cover the object's whole life, not a frame.
         moc.clear_buffer();
         moc.set_resolution(32, 8).unwrap();
         assert_eq!(moc.statistics().occludees, tested);

@@ -1,5 +1,5 @@
-//! The update rules under random sequences of drawing, merging and asking: the buffer is never nearer
-//! than an exact one, and no query calls hidden what an exact buffer shows.
+//! The update rules under random sequences of draws, merges and queries: the buffer is never nearer than an exact one,
+//! and no query reports hidden what an exact buffer shows.
 
 mod oracle;
 mod support;
@@ -10,13 +10,13 @@ use proptest::prelude::*;
 use support::triangles::{Kind, of_any_kind, of_kind};
 use support::{RULES, check, conservative, draw, name, object, read, test};
 
-/// Not whole tiles, so that border tiles are partial.
+/// Not a multiple of the tile size, so that tiles at the edge are partial.
 const SIZE: (usize, usize) = (100, 43);
 
 #[derive(Clone, Debug)]
 enum Step {
     Draw(Vec<Triangle>),
-    /// Draws into another object, of some rule and instruction set, and merges that.
+    /// Draws into another object, with some rule and instruction set, and merges it.
     Merge(Vec<Triangle>, usize, usize),
     /// A rectangle in pixels and its power-of-two w.
     Rectangle([f64; 4], i32),
@@ -24,7 +24,7 @@ enum Step {
 }
 
 fn batch() -> impl Strategy<Value = Vec<Triangle>> {
-    // Large ones fill sub-tiles and so reach the reference depth; the others leave masks behind.
+    // Large ones fill sub-tiles and so affect the reference depth; the others leave masks behind.
     let any = prop_oneof![of_any_kind(SIZE), of_kind(Kind::PartlyOff, SIZE), of_kind(Kind::Uniform, SIZE)];
     proptest::collection::vec(any, 1..12)
 }
@@ -41,7 +41,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     proptest::collection::vec(step, 1..14)
 }
 
-/// A rectangle in pixels, rows counted as the object counts them, as `test_rect` takes it.
+/// Tests a rectangle in pixels, with the object's row direction, using `test_rect`.
 fn rectangle(moc: &MaskedOcclusionCulling, [x0, y0, x1, y1]: [f64; 4], w: f32) -> CullingResult {
     let x = |v: f64| (v * 2.0 / SIZE.0 as f64 - 1.0) as f32;
     let y = |v: f64| (v * 2.0 / SIZE.1 as f64 - 1.0) as f32;
@@ -135,7 +135,8 @@ fn four_layer_is_conservative() {
     sequences(UpdateRule::FourLayer);
 }
 
-/// And not by answering nothing: whatever was drawn before, a wall in front of it hides what is well behind.
+/// The rules must not be trivially conservative: whatever was drawn before, a wall in front of it hides everything well
+/// behind.
 #[test]
 fn a_wall_hides_what_is_behind_it() {
     for &implementation in Implementation::available() {

@@ -1,4 +1,4 @@
-//! Which way a triangle faces is decided exactly, however thin it is, and a draw tells whether anything was in view.
+//! Which way a triangle faces is decided exactly, however thin it is, and a draw reports whether anything was in view.
 
 mod oracle;
 mod support;
@@ -12,7 +12,7 @@ use support::{check, compare_one, mesh, name, objects, read};
 
 fn compare(moc: &mut MaskedOcclusionCulling, t: &Triangle, exact: &Oracle, depth: &mut Vec<f32>) -> Result<(), String> {
     let (vertices, indices) = mesh(&[*t], (exact.width, exact.height), moc.y_axis());
-    // Rows that go down keep the turn that normalised device coordinates give, rows that go up reverse it.
+    // If rows go down, the winding is as in normalised device coordinates; if they go up, it is reversed.
     let clockwise = (area(t) > 0) == (moc.y_axis() == YAxis::Down);
     for winding in [BackfaceWinding::Clockwise, BackfaceWinding::CounterClockwise] {
         let away = clockwise == (winding == BackfaceWinding::Clockwise);

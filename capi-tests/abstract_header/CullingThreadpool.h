@@ -1,4 +1,4 @@
-// The pool beside the class of this folder: the methods of ours, and what link/ has to know of the rest.
+// The pool for the class in this folder: the methods of this library's pool, and what link/ needs to know of the rest.
 #pragma once
 
 #include <atomic>

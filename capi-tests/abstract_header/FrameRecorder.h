@@ -1,4 +1,4 @@
-// The recorder's calls beside the class of this folder; abstract_recorder.cpp counts them.
+// The recorder's functions for the class in this folder; abstract_recorder.cpp counts their calls.
 #pragma once
 
 #include "MaskedOcclusionCulling.h"

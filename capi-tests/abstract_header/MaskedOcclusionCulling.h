@@ -1,5 +1,5 @@
-// A class as an engine may have it that cannot change its headers: the same public methods as ours, but virtual, in the
-// order that Intel's header gives them. This is not that header; it stands in for it in the tests of link/.
+// A class as in an engine that cannot change its headers: the same public methods as this library's, but virtual, in
+// the order of Intel's header. This is not that header; it takes its place in the tests of link/.
 #pragma once
 
 #ifndef QUICK_MASK

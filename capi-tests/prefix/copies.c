@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the files expect of the screen after drawing a wall over its left (-1) or right half. Each returns 0, or the line of the
+/* What the files expect on the screen after drawing a wall over its left (-1) or right half. Each returns 0, or the line of the
  * failed check. */
 int plain_in_c(float side), acme_in_c(float side);
 int plain_in_cpp(float side), acme_in_cpp(float side);

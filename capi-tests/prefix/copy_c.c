@@ -1,5 +1,5 @@
 /*
- * One copy of the library in C: compiled as it is, and with MOC_SYMBOL_PREFIX. Returns 0, or the line of the failed check.
+ * One copy of the library in C: compiled without changes, and with MOC_SYMBOL_PREFIX. Returns 0, or the line of the failed check.
  */
 #include "masked_occlusion_culling.h"
 /* This file uses the short names; without a prefix this include has no effect. */

@@ -1,5 +1,5 @@
-// One copy of the library in C++: compiled as it is, and with MOC_SYMBOL_PREFIX; unoptimised, so that inline methods are
-// functions, which the linker merges by name. Returns 0, or the line of the failed check.
+// One copy of the library in C++: compiled without changes, and with MOC_SYMBOL_PREFIX; unoptimised, so that inline
+// methods are functions, which the linker merges by name. Returns 0, or the line of the failed check.
 #include <stdio.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
 /*
- * A plugin of the engine in facade.c, in C: it has a facade of its own, uses the library with the prefix, and loads a copy
+ * A plugin for the engine in facade.c, in C: it has its own facade, uses the library with the prefix, and loads a copy
  * without one.
  */
 #define _GNU_SOURCE

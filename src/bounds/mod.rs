@@ -1,3 +1,3 @@
-//! Queries of bounds: rectangles on the screen.
+//! Queries of screen-space bounds: rectangles.
 
 pub(crate) mod rectangle;

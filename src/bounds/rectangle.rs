@@ -1,8 +1,8 @@
-//! Rectangles against the buffer: the cheap query, for projected bounding boxes.
+//! Tests rectangles against the buffer: the cheap query, for projected bounding boxes.
 //!
-//! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their `z_min`,
-//! and only where that does not settle it, sub-tile by sub-tile with their layers. Most rectangles are small and hidden, and
-//! settled by a single vector for each of up to four rows of tiles.
+//! A rectangle is widened to the pixels that it touches. Whole tiles are compared by their `z_min`; only if that does
+//! not decide, sub-tiles are compared with their layers. Most rectangles are small and hidden, and one vector for each
+//! of up to four rows of tiles decides them.
 
 use core::marker::PhantomData;
 
@@ -11,11 +11,11 @@ use crate::buffer::{Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{self, Job, Level, Simd};
 use crate::{CullingResult, YAxis};
 
-/// From a rounded 1/w to a bound that is not farther than the true one.
+/// Factor from a rounded 1/w to a bound that is not farther than the true value.
 const NEARER: f32 = 1.0 + 1.0 / (1 << 23) as f32;
 
-/// Tests [x min, y min, x max, y max] in normalised device coordinates at `w_min`. Also the number of tiles that had to be
-/// looked into, where that is counted.
+/// Tests [x min, y min, x max, y max] in normalised device coordinates at `w_min`. Also returns the number of tiles
+/// whose layers were read, if statistics are enabled.
 #[inline(always)]
 pub(crate) fn test(
     level: Level,
@@ -27,8 +27,8 @@ pub(crate) fn test(
     test_spans(level, buffer, y_axis, (x_min, x_max), (y_min, y_max), w_min)
 }
 
-/// In pairs, which are passed in registers: an array would be stored as four floats and loaded as a vector, which waits for the
-/// stores, a third of a small rectangle's time.
+/// In pairs, which are passed in registers. An array would be stored as four floats and loaded as a vector, which
+/// defeats store forwarding and is measurably slower.
 #[inline(never)]
 fn test_spans(
     level: Level,
@@ -38,7 +38,7 @@ fn test_spans(
     (y_min, y_max): (f32, f32),
     w_min: f32,
 ) -> (CullingResult, u64) {
-    // NaN fails every comparison: it ends here, too.
+    // NaN fails every comparison and so ends here too.
     let sound = x_min <= x_max && y_min <= y_max && w_min > 0.0;
     if !sound {
         return (CullingResult::Visible, 0);
@@ -62,7 +62,7 @@ fn test_spans(
     with_rule!(buffer.rule(), R => simd::run(level, Layers::<R>::of(query)))
 }
 
-/// The tiles that a rectangle touches, at least one; all of them where it is not a rectangle.
+/// The tiles that a rectangle touches, at least one; all tiles if it is not a valid rectangle.
 pub(crate) fn tiles(buffer: &Buffer, y_axis: YAxis, [x_min, y_min, x_max, y_max]: [f32; 4]) -> TileRect {
     // NaN fails every comparison.
     if !(x_min <= x_max && y_min <= y_max) {
@@ -71,11 +71,11 @@ pub(crate) fn tiles(buffer: &Buffer, y_axis: YAxis, [x_min, y_min, x_max, y_max]
     Pixels::touched(buffer, y_axis, [x_min, y_min, x_max, y_max]).tiles()
 }
 
-/// The first and last of `size` pixels across [-1, 1] that an interval touches. One that ends on a
-/// pixel's boundary does not touch the pixel beyond. In f64 nothing is rounded but what is far below a pixel.
+/// The first and last of `size` pixels across [-1, 1] that an interval touches. An interval that ends on a pixel
+/// boundary does not touch the next pixel. In f64 the rounding error is far below a pixel.
 ///
-/// Two axes are two lanes to the compiler as long as every line is one instruction of the baseline of x86-64: checked
-/// conversions, `clamp`, `floor` and `ceil` are not, and were half of a small rectangle's time.
+/// The compiler vectorises the two axes as long as every line is one instruction of baseline x86-64. Checked
+/// conversions, `clamp`, `floor` and `ceil` are not, and are measurably slower.
 #[inline(always)]
 fn touched(min: f32, max: f32, size: u32) -> (u32, u32) {
     let size = f64::from(size as i32);
@@ -84,15 +84,15 @@ fn touched(min: f32, max: f32, size: u32) -> (u32, u32) {
     let smaller = |a: f64, b: f64| if a < b { a } else { b };
     let first = smaller(larger(f64::from(min) * half + half, 0.0), size - 1.0);
     let end = smaller(f64::from(max) * half + half, size);
-    // The largest number below: its whole part is the last pixel's. What is not above 0 becomes NaN or stays below
-    // it, and neither is larger.
+    // The next smaller number: its integer part is the last pixel. Anything not above 0 becomes NaN or stays below it,
+    // and neither is larger.
     let below = f64::from_bits(end.to_bits().wrapping_sub(1));
-    // SAFETY: neither is NaN, and both are from 0 to `size`.
+    // SAFETY: neither is NaN, and both are in 0 to `size`.
     let whole = |x: f64| unsafe { x.to_int_unchecked::<i32>() as u32 };
     (whole(first), whole(larger(below, first)))
 }
 
-/// A rectangle of pixels, the last inside.
+/// A rectangle of pixels, the end inclusive.
 #[derive(Clone, Copy)]
 struct Pixels {
     x0: u32,
@@ -102,7 +102,7 @@ struct Pixels {
 }
 
 impl Pixels {
-    /// Those on the screen that a rectangle touches, at least one; no edge is NaN.
+    /// The pixels on the screen that a rectangle touches, at least one; no edge is NaN.
     #[inline(always)]
     fn touched(buffer: &Buffer, y_axis: YAxis, [x_min, y_min, x_max, y_max]: [f32; 4]) -> Self {
         let (row_min, row_max) = if y_axis == YAxis::Down { (-y_max, -y_min) } else { (y_min, y_max) };
@@ -111,7 +111,7 @@ impl Pixels {
         Self { x0, y0, x1, y1 }
     }
 
-    /// The tiles that hold one of them.
+    /// The tiles that contain these pixels.
     #[inline(always)]
     fn tiles(self) -> TileRect {
         let Self { x0, y0, x1, y1 } = self;
@@ -119,8 +119,7 @@ impl Pixels {
     }
 }
 
-/// A rectangle of a few tiles, whose `z_min` is compared without a loop: its end would be mispredicted, half of a small
-/// rectangle's time.
+/// A rectangle of a few tiles, whose `z_min` is compared without a loop, because the loop's end would be mispredicted.
 struct SmallRectangle<'a> {
     buffer: &'a Buffer,
     tiles: TileRect,
@@ -128,11 +127,11 @@ struct SmallRectangle<'a> {
 }
 
 const SMALL_ROWS: u32 = 4;
-/// No vector is narrower.
+/// The narrowest vector.
 const SMALL_COLUMNS: u32 = 8;
 
 impl SmallRectangle<'_> {
-    /// Are these few enough? There is at least one. One branch instead of two.
+    /// Is the rectangle small enough? It has at least one tile. One branch instead of two.
     #[inline(always)]
     fn holds(tiles: TileRect) -> bool {
         let (columns, rows) = (tiles.x1 - tiles.x0 - 1, tiles.y1 - tiles.y0 - 1);
@@ -149,11 +148,11 @@ impl Job for SmallRectangle<'_> {
         const { assert!(S::LANES >= SMALL_COLUMNS as usize) };
         let Self { buffer, tiles, depth } = self;
         let (pitch, height) = (buffer.tiles_w() as usize, tiles.y1 - tiles.y0);
-        // The last row stands for those after it.
+        // The last row is repeated for missing ones.
         let step = |k: u32| if k < height { pitch } else { 0 };
         let depth = s.f(depth);
-        // SAFETY: tiles of the buffer, after the last of which there is room for a vector. Nobody draws there: a pool's locks see to
-        // that, and a direct query discards its answer otherwise.
+        // SAFETY: these are tiles of the buffer, with room for a vector after the last one. Nobody is drawing: a pool's
+        // locks ensure that, and a direct query discards its answer otherwise.
         let rows = unsafe {
             let first = buffer.z_min_of(tiles.x0, tiles.y0);
             let second = first.add(step(1));
@@ -172,16 +171,16 @@ impl Job for SmallRectangle<'_> {
     }
 }
 
-/// What is left of a query.
+/// The slow path of a query.
 struct RectangleQuery<'a> {
     buffer: &'a Buffer,
     pixels: Pixels,
     depth: f32,
-    /// The tiles to compare, of a small rectangle.
+    /// For a small rectangle: the candidate tiles.
     open: Option<u32>,
 }
 
-/// A query of tiles by their layers.
+/// Queries tiles by their layers.
 struct Layers<'a, R> {
     query: RectangleQuery<'a>,
     rule: PhantomData<R>,
@@ -199,7 +198,7 @@ impl<R: Rule> Job for Layers<'_, R> {
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Self::Output {
         let (tiles, mut looked) = (self.query.pixels.tiles(), 0);
-        // SAFETY: the rectangle's tiles are tiles of the buffer. As to draws, see `SmallRectangle`.
+        // SAFETY: the rectangle's tiles are tiles of the buffer. For concurrent draws, see `SmallRectangle`.
         let seen = unsafe {
             match self.query.open {
                 Some(open) => self.sees_open::<S, SMALL_COLUMNS>(s, (tiles.x0, tiles.y0), open, &mut looked),
@@ -212,7 +211,8 @@ impl<R: Rule> Job for Layers<'_, R> {
 }
 
 impl<R: Rule> Layers<'_, R> {
-    /// May something of the rectangle be seen in the tiles that `open` has a bit for, `PER_ROW` per row, from tile (x, y) on?
+    /// May any part of the rectangle be visible in the tiles whose bit is set in `open`, `PER_ROW` per row, starting at
+    /// tile (x, y)?
     ///
     /// # Safety
     /// As [`Self::sees`].
@@ -228,7 +228,7 @@ impl<R: Rule> Layers<'_, R> {
             let tile = open.trailing_zeros();
             open &= open - 1;
             *looked += 1;
-            // SAFETY: one of the tiles that the rectangle touches.
+            // SAFETY: this is one of the tiles that the rectangle touches.
             if unsafe { self.sees_tile(s, x + tile % PER_ROW, y + tile / PER_ROW) } {
                 return true;
             }
@@ -236,10 +236,10 @@ impl<R: Rule> Layers<'_, R> {
         false
     }
 
-    /// May something of the rectangle be seen in its tiles?
+    /// May any part of the rectangle be visible in its tiles?
     ///
     /// # Safety
-    /// They are tiles of the buffer, and nobody draws.
+    /// They are tiles of the buffer, and nobody is drawing.
     #[inline(always)]
     unsafe fn sees<S: Simd>(&self, s: S, tiles: TileRect, looked: &mut u64) -> bool {
         let buffer = self.query.buffer;
@@ -247,13 +247,13 @@ impl<R: Rule> Layers<'_, R> {
         let lanes = S::LANES as u32;
         let (first, end) = (tiles.x0, tiles.x1);
         for y in tiles.y0..tiles.y1 {
-            // Lanes that are not behind their whole tile.
+            // Lanes whose tile does not hide the rectangle by its `z_min`.
             let open_from = |x: u32| {
                 // SAFETY: the caller's contract; after the last tile there is room for a vector.
                 let z_min = unsafe { s.load_f(buffer.z_min_of(x, y)) };
                 s.le(z_min, depth)
             };
-            // One branch per row: most have none.
+            // One branch per row, because most rows have no such tile.
             let mut x = first;
             let mut any = s.first(0);
             while x + lanes <= end {
@@ -267,7 +267,7 @@ impl<R: Rule> Layers<'_, R> {
             let mut x = first;
             while x < end {
                 let open = s.mask_bits(s.and_m(s.first((end - x) as usize), open_from(x)));
-                // SAFETY: as above; all bits are of this row.
+                // SAFETY: as above; all bits refer to this row.
                 if unsafe { self.sees_open::<S, { u32::BITS }>(s, (x, y), open, looked) } {
                     return true;
                 }
@@ -277,14 +277,14 @@ impl<R: Rule> Layers<'_, R> {
         false
     }
 
-    /// May something of the rectangle be seen in this tile?
+    /// May any part of the rectangle be visible in this tile?
     ///
     /// # Safety
-    /// It is a tile of the buffer, and nobody draws.
+    /// It is a tile of the buffer, and nobody is drawing.
     #[inline(always)]
     unsafe fn sees_tile<S: Simd>(&self, s: S, x: u32, y: u32) -> bool {
         let RectangleQuery { buffer, pixels: p, depth, .. } = self.query;
-        // Vectors of sixteen lanes load the tile's whole block; rows of the other tile touch nothing.
+        // With sixteen lanes the whole block is loaded; in rows of the other tile no pixel is touched.
         let block_y = y & !(S::LANES as u32 / 8 - 1);
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
         let planes = unsafe {
@@ -293,7 +293,7 @@ impl<R: Rule> Layers<'_, R> {
             }
             R::load(s, buffer.tile(x, block_y))
         };
-        // Rows as lanes, their first and their end pixel; a row outside has none.
+        // Rows as lanes, with their first and end pixel; a row outside the rectangle has none.
         let rows = s.add_i(s.i((block_y * TILE_HEIGHT) as i32), s.iota());
         let first_row = p.y0.max(y * TILE_HEIGHT);
         let end_row = (p.y1 + 1).min((y + 1) * TILE_HEIGHT);

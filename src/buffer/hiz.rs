@@ -1,22 +1,23 @@
-//! The coarse HiZ level: cells of 128x64 pixels, each the least `z_min` of its tiles.
+//! The coarse HiZ level: cells of 128x64 pixels, each holding the least `z_min` of its tiles.
 //!
-//! It finds hidden triangles that are too large for their tiles to be looked up one by one, before their edges are set up.
-//! Between two clears a tile's `z_min` only rises, so a cell may lag behind its tiles: it then lets a hidden triangle through,
-//! no more. Cells are therefore refreshed only once enough tiles were drawn into, by the one thread that draws there.
+//! It finds hidden triangles that are too large for their tiles to be looked up one by one, before their edges are set
+//! up. Between two clears a tile's `z_min` only rises, so a cell may lag behind its tiles: the worst effect is that a
+//! hidden triangle gets through. Cells are therefore refreshed only after enough tiles have been drawn into, by the one
+//! thread that draws there.
 
 use super::{Buffer, CLEARED, TileRect};
 use crate::simd::{MAX_LANES, Simd, store_relaxed};
 
 pub(crate) const COARSE_TILES_W: u32 = 4;
 pub(crate) const COARSE_TILES_H: u32 = 8;
-/// As shifts of a tile's column and row.
+/// Shifts of a tile's column and row.
 pub(crate) const COARSE_COLUMN_SHIFT: i32 = 2;
 pub(crate) const COARSE_ROW_SHIFT: i32 = 3;
 
-/// Room for the tiles of a row of the largest screen, and a vector more.
+/// Room for a row of tiles of the largest screen, plus a vector.
 const ROW: usize = (super::MAX_SIZE / super::TILE_WIDTH) as usize + 4 * MAX_LANES;
 
-/// Cells in a row and in a column.
+/// Number of cells in a row and in a column.
 pub(super) fn counts(tiles_w: u32, tiles_h: u32) -> (u32, u32) {
     (tiles_w.div_ceil(COARSE_TILES_W), tiles_h.div_ceil(COARSE_TILES_H))
 }
@@ -38,14 +39,15 @@ pub(super) unsafe fn clear(buffer: &Buffer, clip: TileRect) {
     }
 }
 
-/// Counts tiles, of a vector's height, that were drawn into inside of `clip`, and refreshes its cells when there were enough.
+/// Counts tiles, of a vector's height, that were drawn into within `clip`, and refreshes its cells once there are
+/// enough.
 ///
 /// # Safety
 /// As [`refresh`].
 #[inline(always)]
 pub(super) unsafe fn count_drawn<S: Simd>(s: S, buffer: &Buffer, clip: TileRect, tiles: usize, count: &mut u32) {
     *count += tiles as u32;
-    // So rarely that it costs little beside the tiles; twice or half as often makes no difference.
+    // Rare enough to cost little compared with the tiles; twice or half as often makes no measurable difference.
     if *count >= (clip.x1 - clip.x0) * (clip.y1 - clip.y0) / 8 {
         *count = 0;
         // SAFETY: the caller's contract.
@@ -53,7 +55,7 @@ pub(super) unsafe fn count_drawn<S: Simd>(s: S, buffer: &Buffer, clip: TileRect,
     }
 }
 
-/// Refreshes the cells of a rectangle of tiles that begins with a cell and ends with one or at the buffer's end.
+/// Refreshes the cells of a rectangle of tiles that starts at a cell boundary and ends at one or at the buffer's edge.
 ///
 /// # Safety
 /// Nobody else writes its tiles and cells; others may read `z_min` word by word.
@@ -63,7 +65,7 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
     let tiles = (clip.x1 - clip.x0) as usize;
     let cells = tiles.div_ceil(COARSE_TILES_W as usize);
     let mut row = [0.0_f32; ROW];
-    // Past the last tile: infinitely near, so that it is never the least.
+    // Past the last tile: infinitely near, so that these never are the least.
     for x in (tiles.next_multiple_of(S::LANES)..(cells * COARSE_TILES_W as usize).next_multiple_of(4 * S::LANES))
         .step_by(S::LANES)
     {
@@ -76,7 +78,7 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
             let first = buffer.z_min_of(clip.x0 + x as u32, y0);
             let of_row = |y: u32| {
                 let p = first.wrapping_add((y * buffer.tiles_w) as usize);
-                // SAFETY: tiles of the rectangle, and no others: beside them another thread may be writing.
+                // SAFETY: only tiles of the rectangle are read; next to it another thread may be writing.
                 unsafe {
                     if x + S::LANES <= tiles { s.load_f(p) } else { s.float_of_bits(s.load_some(p.cast(), tiles - x)) }
                 }
@@ -100,13 +102,13 @@ unsafe fn refresh<S: Simd>(s: S, buffer: &Buffer, clip: TileRect) {
             buffer.coarse().wrapping_add((y0 / COARSE_TILES_H * buffer.coarse_w + clip.x0 / COARSE_TILES_W) as usize);
         for k in (0..cells).step_by(S::LANES) {
             let mut least = [0.0; MAX_LANES];
-            // SAFETY: there is room for four vectors in the one array, for a vector in the other.
+            // SAFETY: one array has room for four vectors, the other for one.
             unsafe {
                 let [a, b, c, d] = s.load_quads(row.as_ptr().add(k * COARSE_TILES_W as usize));
                 s.store_f(least.as_mut_ptr(), s.min(s.min(a, b), s.min(c, d)));
             }
             for (lane, &least) in least[..S::LANES.min(cells - k)].iter().enumerate() {
-                // SAFETY: a cell of the rectangle.
+                // SAFETY: this is a cell of the rectangle.
                 unsafe { store_relaxed(to.add(k + lane), least) };
             }
         }
@@ -130,20 +132,20 @@ mod tests {
         }
     }
 
-    /// Fills buffers and refreshes all of their cells, then those of a piece.
+    /// Fills buffers and refreshes all of their cells, then those of a part.
     fn check(who: &str, refresh: impl Fn(Refresh<'_>)) {
         let mut random = fastrand::Rng::with_seed(1);
         for (width, height) in [(1, 1), (33, 9), (1920, 1080), (2050, 70), (16_384, 8), (40, 16_384)] {
             let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
             let (tiles_w, tiles_h) = (buffer.tiles_w, buffer.tiles_h);
             let (coarse_w, coarse_h) = counts(tiles_w, tiles_h);
-            // SAFETY (of all blocks): tiles and cells of a buffer that nobody else has.
+            // SAFETY (of all blocks): tiles and cells of a buffer that nobody else accesses.
             let z_min = |x, y| unsafe { *buffer.z_min_of(x, y) };
             let cell = |x: u32, y: u32| buffer.coarse().wrapping_add((y * coarse_w + x) as usize);
             for (x, y) in (0..tiles_h).flat_map(|y| (0..tiles_w).map(move |x| (x, y))) {
                 unsafe { buffer.z_min_of(x, y).write(random.f32()) };
             }
-            // A piece begins with a cell and ends with one or at the buffer's end.
+            // A part starts at a cell boundary and ends at one or at the buffer's edge.
             let (x0, y0) = (coarse_w / 3, coarse_h / 3);
             let (x1, y1) = ((2 * coarse_w / 3).max(x0 + 1), coarse_h);
             let piece = TileRect {

@@ -1,17 +1,17 @@
-//! Folds one buffer into another of the same size, after Hasselgren and others, "Masked Software
-//! Occlusion Culling" as extended in 2018 for terrain and foreground drawn apart: the layers of the
-//! other tile are taken in like triangles, from far to near.
+//! Merges one buffer into another of the same size, following the 2018 extension of Hasselgren and others, "Masked
+//! Software Occlusion Culling", for terrain and foreground drawn separately: the layers of the other tile are inserted
+//! like triangles, from far to near.
 
 use super::rules::{Rule, with_rule};
 use super::tile::choose;
 use super::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
 use crate::simd::{self, Job, Level, Simd};
 
-/// Folds buffers into a region of another, one after the other. All are of the same size, and the region begins and ends with
-/// blocks or at the buffer's end.
+/// Merges buffers into a region of another, one after the other. All have the same size, and the region begins and ends
+/// at block boundaries or at the buffer's edge.
 ///
 /// # Safety
-/// Nobody draws into the buffers that are folded in.
+/// Nobody draws into the source buffers.
 pub(crate) unsafe fn merge(level: Level, into: Region<'_>, from: &[&Buffer]) {
     simd::run(level, Merge { into, from });
 }
@@ -27,7 +27,7 @@ impl Job for Merge<'_> {
     #[inline(always)]
     fn run<T: Simd>(self, s: T) {
         let (into, tiles) = (self.into.buffer(), self.into.tiles());
-        // Row by row, not buffer by buffer: the row that is folded into stays in the first-level cache.
+        // Row by row rather than buffer by buffer, so that the destination row stays in the L1 cache.
         for y in (tiles.y0..tiles.y1).step_by(T::LANES / SUB_TILES) {
             for from in self.from {
                 let row = Row { into, from, columns: tiles.x0..tiles.x1, y };
@@ -56,8 +56,8 @@ impl Row<'_> {
         let Self { into, from, columns, y } = self;
         let alike = into.rule() == from.rule();
         for x in columns {
-            // SAFETY: it is a tile of both buffers, which are of one size, and where vectors take a block at once, `y` is
-            // the block's; the caller vouches for who else uses them; both were made for their rules.
+            // SAFETY: it is a tile of both buffers, which have the same size; where vectors cover a block, `y` is the
+            // block's row. The caller guarantees exclusive access. Both buffers were made for their rules.
             unsafe {
                 let other = TilePlace::new(from, x, y);
                 if ClearState::of::<T>(other).none_drawn() {
@@ -66,13 +66,13 @@ impl Row<'_> {
                 let at = TilePlace::new(into, x, y);
                 let mut planes = load::<T, R>(s, into, at, || y);
                 let theirs = load::<T, O>(s, from, other, || y);
-                // Depths behind the reference change nothing.
+                // Depths behind the reference have no effect.
                 let nearest = s.max_positive(theirs.z0, theirs.z_near);
                 if s.all(s.le(nearest, planes.z0)) {
                     continue;
                 }
-                // Where all of the other is nearer than all that is here, it stays as it is. Tested lane by lane,
-                // so that the bits do not depend on how many lanes there are.
+                // If all of the other sub-tile is nearer than everything here, it is copied unchanged. Tested lane by
+                // lane, so that the bits do not depend on the number of lanes.
                 let taken = s.lt(s.max_positive(planes.z0, planes.z_near), theirs.z0);
                 if alike && s.all(taken) {
                     planes = theirs;

@@ -1,20 +1,20 @@
-//! The masked hierarchical depth buffer: its memory, the update rules, the hierarchy, clearing and merging.
+//! The masked hierarchical depth buffer: its memory, update rules, HiZ, clearing and merging.
 //!
-//! The screen is divided into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i`
-//! of a vector is the sub-tile in column `i % 4` and row `i / 4`. Bit `8 * y + x` of a mask is the pixel
-//! in column `x` and row `y` of the sub-tile. In memory two tiles, one below the other, are a block: five planes of
-//! sixteen words (20 bytes per sub-tile) under the three-layer rule, seven (28 bytes) under the four-layer rule and three
-//! (12 bytes) under the others, plane after plane, the upper tile's eight words first. So a plane is one cache line, vectors of
-//! sixteen lanes take a block at once, and vectors of eight lanes half of it.
+//! The screen is divided into tiles of 32x8 pixels, each of eight 8x4 sub-tiles in two rows of four; lane `i` of a
+//! vector is the sub-tile in column `i % 4` and row `i / 4`. Bit `8 * y + x` of a mask is the pixel in column `x` and
+//! row `y` of the sub-tile. In memory two vertically adjacent tiles form a block: five planes of sixteen words (20
+//! bytes per sub-tile) under the three-layer rule, seven (28 bytes) under the four-layer rule and three (12 bytes)
+//! under the others, plane after plane, with the upper tile's eight words first. A plane of a block is thus one cache
+//! line; vectors of sixteen lanes process a whole block, and vectors of eight lanes half of it.
 //!
-//! Beside the planes, each tile has the least of its reference depths, `z_min`: depth is 1/w, so the least is the farthest. A
-//! triangle or rectangle behind all of a tile costs one comparison. The value [`CLEARED`] there says that nothing was drawn
-//! since the last clear and that the planes hold old contents: a clear writes four bytes per tile and no more. These values
-//! and those of the coarse level (see `hiz.rs`) are the hierarchy, HiZ.
+//! Besides the planes, each tile has `z_min`, the least of its reference depths: depth is 1/w, so the least is the
+//! farthest. A triangle or rectangle behind all of a tile is rejected by one comparison. The value [`CLEARED`] there
+//! means that nothing has been drawn since the last clear and that the planes hold stale contents: a clear writes four
+//! bytes per tile and nothing else. These values and those of the coarse level (see `hiz.rs`) form the hierarchy, HiZ.
 //!
-//! Sub-tiles outside the screen, in the tiles of its right and lower border, are infinitely near from the start, so that
-//! they never hold back `z_min`. In sub-tiles that lie partly outside, a triangle that covers any pixel inside covers all
-//! pixels outside.
+//! Sub-tiles outside the screen, in the tiles at its right and bottom edge, are infinitely near from the start, so that
+//! they never hold back `z_min`. In sub-tiles that are partly outside, a triangle that covers any pixel inside covers
+//! all pixels outside.
 
 pub(crate) mod hiz;
 pub(crate) mod merge;
@@ -37,15 +37,15 @@ pub(crate) const MAX_SIZE: u32 = 16_384;
 pub(crate) const TILE_WIDTH: u32 = 32;
 pub(crate) const TILE_HEIGHT: u32 = 8;
 const BLOCK_HEIGHT: u32 = 2 * TILE_HEIGHT;
-/// Sub-tiles in a tile, which is lanes in a tile's vector.
+/// Sub-tiles in a tile, and lanes in a tile's vector.
 pub(crate) const SUB_TILES: usize = 8;
 
-/// Words of a plane of a block, which is two tiles.
+/// Words in a plane of a block, which is two tiles.
 pub(crate) const BLOCK: usize = 2 * SUB_TILES;
 
-/// `z_min` of a tile into which nothing was drawn since the last clear.
+/// `z_min` of a tile into which nothing has been drawn since the last clear.
 pub(crate) const CLEARED: f32 = -1.0;
-/// The reference depth of sub-tiles outside of the screen.
+/// The reference depth of sub-tiles outside the screen.
 const OUTSIDE: f32 = f32::MAX;
 
 pub(crate) struct Buffer {
@@ -56,15 +56,15 @@ pub(crate) struct Buffer {
     rule: UpdateRule,
     statistics: bool,
     planes: AlignedWords,
-    /// `z_min` of the tiles, then of the coarse level's cells, with room for a vector after each; then a count, see
+    /// `z_min` of the tiles, then of the coarse level's cells, with room for a vector after each; then a counter, see
     /// [`Buffer::since_refresh`].
     hiz: AlignedWords,
     coarse_w: u32,
     first_coarse: usize,
-    /// For the blocks that the screen's edge crosses: which pixels of each sub-tile are outside.
-    /// First those of the right column, then of the lowest row, then of the corner.
+    /// For the blocks that the screen's edge crosses, the pixels of each sub-tile that are outside: first for the right
+    /// column, then for the bottom row, then for the corner.
     outside: [[u32; BLOCK]; 3],
-    /// The column of tiles and the row of blocks in which the screen's edge crosses sub-tiles, or none.
+    /// The column of tiles and the row of blocks in which the screen's edge crosses sub-tiles, if any.
     edge_column: u32,
     edge_row: u32,
 }
@@ -125,7 +125,7 @@ impl Buffer {
         self.rule
     }
 
-    /// Are draws and queries counted?
+    /// Are statistics collected?
     pub fn statistics(&self) -> bool {
         self.statistics
     }
@@ -136,7 +136,7 @@ impl Buffer {
     }
 
     pub fn clear(&mut self) {
-        // SAFETY: `&mut self`, and the array is that long; any bits are an f32.
+        // SAFETY: `&mut self`, and the array has that length; any bit pattern is an f32.
         let z_min = unsafe {
             core::slice::from_raw_parts_mut(self.hiz.as_ptr().cast::<core::mem::MaybeUninit<f32>>(), self.hiz.len())
         };
@@ -167,7 +167,7 @@ impl Buffer {
         Ok(TileRect { x0, y0, x1, y1 })
     }
 
-    /// The planes of the first block; those of each next are `BLOCK` words for every plane away.
+    /// The planes of the first block; each following block is `BLOCK` words per plane further.
     #[inline(always)]
     pub fn planes(&self) -> *mut u32 {
         self.planes.as_ptr()
@@ -182,31 +182,31 @@ impl Buffer {
         self.planes.as_ptr().wrapping_add(words)
     }
 
-    /// `z_min` of the tiles, row by row, for whole blocks, and room for a vector more.
+    /// `z_min` of the tiles, row by row, in whole blocks, with room for a vector after them.
     #[inline(always)]
     pub fn z_min(&self) -> *mut f32 {
         self.hiz.as_ptr().cast()
     }
 
-    /// `z_min` of the coarse level's cells, row by row, and room for a vector more.
+    /// `z_min` of the coarse level's cells, row by row, with room for a vector after them.
     #[inline(always)]
     pub fn coarse(&self) -> *mut f32 {
         self.z_min().wrapping_add(self.first_coarse)
     }
 
-    /// How many tiles were drawn into since the coarse level was refreshed.
+    /// How many tiles have been drawn into since the coarse level was refreshed.
     #[inline(always)]
     fn since_refresh(&self) -> *mut u32 {
         self.hiz.as_ptr().wrapping_add(self.hiz.len() - 1)
     }
 
-    /// Cells of the coarse level in a row.
+    /// Cells per row of the coarse level.
     #[inline(always)]
     pub fn coarse_w(&self) -> u32 {
         self.coarse_w
     }
 
-    /// The number of the coarse level's first cell, counted from the first tile's `z_min` on.
+    /// The index of the coarse level's first cell, counted from the first tile's `z_min`.
     #[inline(always)]
     pub fn first_coarse(&self) -> usize {
         self.first_coarse
@@ -218,7 +218,7 @@ impl Buffer {
         self.z_min().wrapping_add(y as usize * self.tiles_w as usize + x as usize)
     }
 
-    /// The pixels outside the screen in tile (x, y) and, where y is even, in the tile below, eight words each; `None` where
+    /// The pixels outside the screen in tile (x, y) and, if y is even, in the tile below, eight words each; `None` if
     /// their block has none.
     #[inline(always)]
     pub fn outside_mask(&self, x: u32, y: u32) -> Option<*const u32> {
@@ -239,7 +239,7 @@ impl Buffer {
         self.edge_column != u32::MAX || self.edge_row != u32::MAX
     }
 
-    /// [`Self::outside_mask`], only where the screen's edge crosses sub-tiles.
+    /// [`Self::outside_mask`], but only if the screen's edge crosses sub-tiles.
     #[inline(always)]
     pub fn edge_mask(&self, x: u32, y: u32) -> Option<*const u32> {
         let right = x == self.edge_column;
@@ -248,13 +248,13 @@ impl Buffer {
     }
 }
 
-/// Words of a sub-tile: depths and masks.
+/// Words per sub-tile: depths and masks.
 #[inline(always)]
 fn plane_count(rule: UpdateRule) -> usize {
     with_rule!(rule, R => R::PLANES)
 }
 
-/// The pixels of a block that are not among its first `width` columns and `height` rows.
+/// The pixels of a block outside its first `width` columns and `height` rows.
 fn outside(width: u32, height: u32) -> [u32; BLOCK] {
     core::array::from_fn(|lane| {
         let (left, top) = (lane as u32 % 4 * 8, lane as u32 / 4 * 4);

@@ -1,9 +1,9 @@
-//! The depth of every pixel, for looking at: what the buffer knows at least.
+//! The depth of every pixel, for visualisation: the bound that the buffer guarantees.
 
 use super::rules::{Rule, with_rule};
 use super::{BLOCK, Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH};
 
-/// The depth of a pixel into which nothing was drawn.
+/// The depth of a pixel into which nothing has been drawn.
 const NOTHING: f32 = -1.0;
 
 /// Writes width times height depths.
@@ -20,13 +20,13 @@ fn write_layers<R: Rule>(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
         for (column, pixels) in line.chunks_mut(8).enumerate() {
             let x = (column / (TILE_WIDTH as usize / 8)) as u32;
             let lane = row % TILE_HEIGHT as usize / 4 * 4 + column % 4;
-            // SAFETY: it is a tile of the buffer, and nobody draws while that is borrowed.
+            // SAFETY: it is a tile of the buffer, and nobody can draw while the buffer is borrowed.
             if unsafe { *buffer.z_min_of(x, y) } == CLEARED {
                 pixels.fill(NOTHING);
                 continue;
             }
-            // SAFETY: the tile was drawn into, so that its planes were written; it has as many as its rule says, and `lane` is
-            // a sub-tile of it.
+            // SAFETY: the tile has been drawn into, so its planes were written; there are as many as its rule says, and
+            // `lane` is one of its sub-tiles.
             let word = |plane: usize| unsafe { *buffer.tile(x, y).add(plane * BLOCK + lane) };
             let z0 = f32::from_bits(word(0));
             for (x, pixel) in pixels.iter_mut().enumerate() {

@@ -1,15 +1,15 @@
-//! Exclusive access to some of a buffer's tiles.
+//! Exclusive access to a part of a buffer's tiles.
 
 use super::{Buffer, CLEARED, TileRect, hiz};
 use crate::simd::{Simd, store_relaxed};
 
-/// Exclusive access to a rectangle of tiles: as long as it exists, nobody else writes them. What draws takes a region, so that
-/// one can only draw where one may.
+/// Exclusive access to a rectangle of tiles: while it exists, nobody else writes them. Drawing functions take a region,
+/// so they can only draw where they are allowed to.
 pub(crate) struct Region<'a> {
     buffer: &'a Buffer,
     tiles: TileRect,
-    /// How many tiles were drawn into since the coarse cells of the region were refreshed; `None` if the region is not made of
-    /// whole cells.
+    /// How many tiles have been drawn into since the coarse cells of the region were refreshed; `None` if the region
+    /// does not consist of whole cells.
     since_refresh: Option<&'a mut u32>,
 }
 
@@ -23,11 +23,12 @@ impl<'a> Region<'a> {
         Self { buffer, tiles: buffer.all_tiles(), since_refresh: Some(since_refresh) }
     }
 
-    /// A rectangle of tiles; with `since_refresh`, it begins with a coarse cell and ends with one or at the buffer's end.
+    /// A rectangle of tiles; with `since_refresh`, it starts at a coarse cell boundary and ends at one or at the
+    /// buffer's edge.
     ///
     /// # Safety
-    /// While the region exists, nobody else writes its tiles (and, with `since_refresh`, its coarse cells). Others may read
-    /// `z_min`, word by word; what else they read of these tiles they must discard.
+    /// While the region exists, nobody else writes its tiles (and, with `since_refresh`, its coarse cells). Others may
+    /// read `z_min` word by word; anything else that they read of these tiles they must discard.
     #[inline(always)]
     pub unsafe fn new(buffer: &'a Buffer, tiles: TileRect, since_refresh: Option<&'a mut u32>) -> Self {
         Self { buffer, tiles, since_refresh }
@@ -43,7 +44,7 @@ impl<'a> Region<'a> {
         self.tiles
     }
 
-    /// Whether the region is made of whole coarse cells, which are kept up to date.
+    /// Whether the region consists of whole coarse cells, which are kept up to date.
     #[inline(always)]
     pub fn has_coarse_level(&self) -> bool {
         self.since_refresh.is_some()
@@ -58,20 +59,20 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// Sets the tiles infinitely far. The region is made of whole coarse cells.
+    /// Clears the tiles to infinitely far. The region must consist of whole coarse cells.
     pub fn clear(&mut self) {
         let Self { buffer, tiles, .. } = *self;
         if let Some(since_refresh) = &mut self.since_refresh {
             **since_refresh = 0;
         }
-        // Blocks are whole: the lower tiles of the last row may lie below the screen.
+        // In whole blocks: the lower tiles of the last row may be below the screen.
         for y in tiles.y0..tiles.y1.next_multiple_of(2) {
             for x in tiles.x0..tiles.x1 {
                 // SAFETY: by `new` or `whole`, nobody else writes the tiles.
                 unsafe { store_relaxed(buffer.z_min_of(x, y), CLEARED) };
             }
         }
-        // SAFETY: as above, and the region is made of whole cells.
+        // SAFETY: as above, and the region consists of whole cells.
         unsafe { hiz::clear(buffer, tiles) };
     }
 }

@@ -1,10 +1,11 @@
-//! Tiles: rectangles of them, where one lies in memory, whether it was drawn into since the last clear, and what it holds.
+//! Tiles: rectangles of them, where one is in memory, whether it has been drawn into since the last clear, and its
+//! contents.
 
 use super::rules::{Planes, Rule};
 use super::{Buffer, OUTSIDE, SUB_TILES};
 use crate::simd::Simd;
 
-/// A rectangle of tiles, the second corner outside.
+/// A rectangle of tiles, end exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TileRect {
     pub x0: u32,
@@ -17,10 +18,10 @@ impl TileRect {
     pub const NONE: Self = Self { x0: 0, y0: 0, x1: 0, y1: 0 };
 }
 
-/// The contents of cleared tiles, of which these pixels are outside the screen.
+/// The contents of cleared tiles, with the given pixels outside the screen.
 ///
 /// # Safety
-/// The mask can be read for a vector.
+/// A vector can be read from the mask.
 #[inline(always)]
 unsafe fn cleared<S: Simd, R: Rule>(s: S, outside: Option<*const u32>) -> Planes<S> {
     let mut planes = R::empty(s);
@@ -32,8 +33,8 @@ unsafe fn cleared<S: Simd, R: Rule>(s: S, outside: Option<*const u32>) -> Planes
     planes
 }
 
-/// Where a tile is: its column, its planes, its `z_min`, and how far away the tile below has its own. The row is seldom needed
-/// and is passed as a function.
+/// Where a tile is: its column, its planes, its `z_min`, and the offset of those of the tile below. The row is seldom
+/// needed and is passed as a function.
 #[derive(Clone, Copy)]
 pub(crate) struct TilePlace {
     pub x: u32,
@@ -50,8 +51,8 @@ impl TilePlace {
     }
 }
 
-/// Whether something was drawn since the last clear into a tile and, for vectors of sixteen lanes, into the tile below (else
-/// the same tile again): the bits of their `z_min`, of which only [`CLEARED`](super::CLEARED) is negative.
+/// Whether anything has been drawn since the last clear into a tile and, with sixteen lanes, into the tile below
+/// (otherwise the same tile again): the bits of their `z_min`, of which only [`CLEARED`](super::CLEARED) is negative.
 #[derive(Clone, Copy)]
 pub(crate) struct ClearState {
     upper: i32,
@@ -60,7 +61,7 @@ pub(crate) struct ClearState {
 
 impl ClearState {
     /// # Safety
-    /// It is a tile of the buffer, into which nobody draws.
+    /// It is a tile of the buffer, and nobody is drawing into it.
     #[inline(always)]
     pub unsafe fn of<S: Simd>(at: TilePlace) -> Self {
         const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
@@ -80,10 +81,10 @@ impl ClearState {
     }
 }
 
-/// What is in a tile, or, for a vector of sixteen lanes and an even row, in it and in the tile below.
+/// The contents of a tile or, with sixteen lanes and an even row, of it and the tile below.
 ///
 /// # Safety
-/// It is a tile of the buffer, which was made for the rule `R` and into which nobody draws.
+/// It is a tile of the buffer, which was made for the rule `R`, and nobody is drawing into it.
 #[inline(always)]
 pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace, row: impl Fn() -> u32) -> Planes<S> {
     // SAFETY: the caller's contract; blocks are whole.
@@ -103,7 +104,7 @@ pub(crate) unsafe fn load<S: Simd, R: Rule>(s: S, buffer: &Buffer, at: TilePlace
     }
 }
 
-/// The lanes in `m` of one, the others of the other.
+/// The lanes in `m` from one, the others from the other.
 #[inline(always)]
 pub(super) fn choose<S: Simd>(s: S, m: S::M, a: &Planes<S>, b: &Planes<S>) -> Planes<S> {
     Planes {

@@ -1,33 +1,33 @@
-//! Recording what an object is told.
+//! Recording an object's calls.
 
 use std::path::Path;
 
 use crate::{CullingResult, DrawOptions, Error, MaskedOcclusionCulling, RecordingError, Vertices};
 
 impl MaskedOcclusionCulling {
-    /// Records clears, draws and queries into a file from now on, for [`Recording`](crate::Recording) and for Intel MOC's own
-    /// player.
+    /// Starts recording clears, draws and queries to a file, for [`Recording`](crate::Recording) and for Intel MOC's
+    /// own player.
     ///
-    /// The file names one near plane and one resolution: setting another of either ends it, once it holds a call.
-    /// Start before the clear of a frame, so that the recording begins with an empty buffer. Merges and binned lists are not
+    /// The file stores a single near plane and resolution: changing either ends it, once it contains a call. Start
+    /// before the clear of a frame, so that the recording begins with an empty buffer. Merges and binned lists are not
     /// recorded; see [`Self::record_render_triangles`].
     ///
     /// # Errors
-    /// [`RecordingError::Busy`] while it records already; [`RecordingError::File`].
+    /// [`RecordingError::Busy`] if it is already recording; [`RecordingError::File`].
     pub fn recorder_start(&self, path: impl AsRef<Path>) -> Result<(), RecordingError> {
         self.recorder.start(path.as_ref(), (self.near_clip_plane(), self.resolution()))
     }
 
-    /// Ends the recording. Nothing happens where there is none; an object that is dropped ends its recording, too.
+    /// Ends the recording, if there is one; so does dropping the object.
     ///
     /// # Errors
-    /// [`RecordingError::File`] where something could not be written, now or before. The file is then cut.
+    /// [`RecordingError::File`] if a write failed, now or earlier. The file is then truncated.
     pub fn recorder_stop(&self) -> Result<(), RecordingError> {
         self.recorder.stop()
     }
 
-    /// Records a draw that the object is not told of by [`Self::render_triangles`], such as that of a binned mesh. Without a
-    /// recording nothing happens.
+    /// Records a draw that does not go through [`Self::render_triangles`], such as that of a binned mesh. Has no effect
+    /// without a recording.
     ///
     /// # Errors
     /// As [`Self::render_triangles`]; nothing is recorded.

@@ -1,12 +1,12 @@
-//! Playing a recording: its calls, made again.
+//! Replays a recording by repeating its calls.
 
 use crate::{CullingResult, Error, MaskedOcclusionCulling, RecordedCall, RecordedRect, Recording};
 
 impl RecordedCall {
-    /// Makes the call. The answer of a draw or a query.
+    /// Repeats the call. Returns the answer of a draw or a query.
     ///
     /// # Errors
-    /// Those of [`MaskedOcclusionCulling::render_triangles`]; never of a call that was loaded.
+    /// Those of [`MaskedOcclusionCulling::render_triangles`], but never for a loaded call.
     pub fn play(&self, moc: &mut MaskedOcclusionCulling) -> Result<Option<CullingResult>, Error> {
         match self {
             Self::ClearBuffer => {
@@ -23,7 +23,7 @@ impl RecordedCall {
         }
     }
 
-    /// The answer that was recorded, where there is one.
+    /// The recorded answer, if there is one.
     pub fn result(&self) -> Option<CullingResult> {
         match self {
             Self::ClearBuffer => None,
@@ -34,11 +34,11 @@ impl RecordedCall {
 }
 
 impl Recording {
-    /// Gives an object the recording's near plane and resolution, clears it, and makes all calls. `answered` is told of each
-    /// call and its answer.
+    /// Gives an object the recording's near plane and resolution, clears it, and repeats all calls. `answered` receives
+    /// each call and its answer.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`]; of a recording that was not loaded also those of the calls that are made.
+    /// [`Error::OutOfMemory`]; for a recording that was not loaded, also those of the calls.
     pub fn play(
         &self,
         moc: &mut MaskedOcclusionCulling,

@@ -1,26 +1,26 @@
-//! The projection from clip space to the screen of a buffer, and which order of corners faces the eye.
+//! The projection from clip space to a buffer's screen, and which winding is front-facing.
 
 use crate::{BackfaceWinding, YAxis};
 
-/// Nearer than this nothing is projected, whatever the near plane.
+/// The nearest w that can be projected, whatever the near plane.
 pub(crate) const NEAREST_W: f32 = 1.0 / (1 << 30) as f32;
-/// Occluders farther than this are dropped; occludees count as being there.
+/// Occluders farther than this are dropped; occludees count as visible.
 pub(crate) const FARTHEST_W: f32 = (1_u64 << 40) as f32;
 
-/// From clip space to the screen of a buffer.
+/// From clip space to a buffer's screen.
 #[derive(Clone, Copy)]
 pub(crate) struct Camera {
     /// Half the width, in 1/256 pixel.
     pub half_width: f32,
     /// Half the height, in 1/256 pixel; positive.
     pub half_height: f32,
-    /// y of normalised device coordinates to rows: minus half the height where rows run down.
+    /// Factor from y in normalised device coordinates to rows: minus half the height if y points down.
     pub row_scale: f32,
     /// The near plane, at least [`NEAREST_W`].
     pub near: f32,
-    /// How far from the screen's centre a vertex may lie, in 1/256 pixel.
+    /// How far a vertex may be from the screen's centre, in 1/256 pixel.
     pub guard_band: f32,
-    /// Is the near plane closer than can be projected? Then a query may not rely on what clipping removes.
+    /// Is the near plane closer than can be projected? Then a query must not rely on clipping removing geometry.
     pub near_is_raised: bool,
 }
 
@@ -47,18 +47,18 @@ impl Camera {
     }
 }
 
-/// Which order of a triangle's corners faces the eye. Set-up wants corners that run clockwise in rows counted downwards.
+/// Which winding is front-facing. Set-up wants corners clockwise with rows counted downwards.
 #[derive(Clone, Copy)]
 pub(crate) struct Facing {
-    /// Exchange the second and third corner of every triangle.
+    /// Swap the second and third corner of every triangle.
     pub swap: bool,
-    /// Draw both sides: set-up finds the order triangle by triangle.
+    /// Draw both sides: set-up determines the winding of each triangle.
     pub both: bool,
 }
 
 impl Facing {
     pub fn new(winding: BackfaceWinding, camera: &Camera) -> Self {
-        // Counter-clockwise with y up looks the same on the screen, where rows may run downwards.
+        // Counter-clockwise with y up looks the same on a screen whose rows run downwards.
         let front_is_counter_clockwise = winding != BackfaceWinding::CounterClockwise;
         Self { swap: front_is_counter_clockwise == camera.rows_run_down(), both: winding == BackfaceWinding::None }
     }

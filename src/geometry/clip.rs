@@ -1,27 +1,28 @@
-//! The few triangles that cross the near plane or leave the guard band, one by one, in f64.
+//! Clips the few triangles that cross the near plane or leave the guard band, one by one, in f64.
 //!
-//! Each plane is clipped against in turn (Sutherland and Hodgman 1974). A new vertex is computed from the
-//! inside end of its edge to the outside end, so that two triangles that share the edge get the same vertex. Vertices
-//! that need no clipping keep the screen coordinates that the vectors gave them, for the same reason.
+//! They are clipped against one plane after the other (Sutherland and Hodgman 1974). A new vertex is always computed
+//! from the inside end of its edge to the outside end, so that two triangles that share the edge get the same vertex.
+//! For the same reason, vertices that need no clipping keep the screen coordinates computed by the vector code.
 //!
-//! A new vertex is a mean of two that are as large as the triangle; where its w is so much smaller that rounding could
-//! move it by a quarter of a subpixel on the screen, the triangle is refused as if it were not finite.
+//! A new vertex is a weighted mean of two that may be as large as the triangle. If its w is so much smaller that
+//! rounding could move the vertex by a quarter of a subpixel on the screen, the triangle is rejected as if it were not
+//! finite.
 
 use super::camera::{Camera, FARTHEST_W, Facing};
 use super::coverage::Coverage;
 use crate::float_environment::round_ties_even;
 
-/// A triangle clipped by five planes has at most eight corners, which six triangles fan out from.
+/// A triangle clipped by five planes has at most eight corners, which form a fan of six triangles.
 const MAX_VERTICES: usize = 8;
 pub(crate) const MAX_TRIANGLES: usize = MAX_VERTICES - 2;
 
-/// What is left of a triangle.
+/// The result of clipping a triangle.
 pub(crate) enum Clipped {
-    /// It lies outside.
+    /// It is entirely outside.
     Nothing,
     /// A coordinate is NaN, infinite or too far for an occluder.
     Dropped,
-    /// Part of an occludee cannot be projected: it may be seen.
+    /// Part of an occludee cannot be projected, so it may be visible.
     Unprojectable,
     Polygon(Polygon),
 }
@@ -35,16 +36,17 @@ pub(crate) struct Polygon {
 #[derive(Clone, Copy)]
 struct Vertex {
     clip: [f64; 3],
-    /// Where the vectors put it; NaN where they could not.
+    /// Its position computed by the vector code; NaN if it has none.
     screen: [f32; 3],
 }
 
-/// Rounding of a new vertex's coordinates, relative to the triangle's largest: five planes, a few roundings each.
+/// Rounding error of a new vertex's coordinates, relative to the triangle's largest: five planes with a few roundings
+/// each.
 const ROUNDING: f64 = 1.0 / (1_u64 << 48) as f64;
 
 const NO_VERTEX: Vertex = Vertex { clip: [0.0; 3], screen: [f32::NAN; 3] };
 
-/// Clips a triangle, given in clip space and as projected by the vectors (x is NaN where that failed).
+/// Clips a triangle, given in clip space and as projected by the vector code (x is NaN where that failed).
 #[cold]
 #[inline(never)]
 pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], screen: &[[f32; 3]; 3]) -> Clipped {
@@ -91,7 +93,7 @@ pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], scree
     for plane in planes {
         (corners, len) = against(plane, &corners, len);
         if plane == planes[0] {
-            // On the near plane w is known; what rounding makes of it may be zero.
+            // On the near plane w is known; after rounding it might be zero.
             for v in corners[..len].iter_mut().filter(|v| v.screen[0].is_nan()) {
                 v.clip[2] = v.clip[2].max(f64::from(camera.near));
             }
@@ -113,13 +115,14 @@ pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], scree
     Clipped::Polygon(polygon)
 }
 
-/// One plane's worth. A convex polygon gains at most one corner.
+/// Clips against one plane. A convex polygon gains at most one corner.
 fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize) -> ([Vertex; MAX_VERTICES], usize) {
     let distance = |v: &Vertex| a * v.clip[0] + b * v.clip[1] + c * v.clip[2] + d;
     let mut out = [NO_VERTEX; MAX_VERTICES];
     let mut n = 0;
     let mut push = |v: Vertex| {
-        // Rounding can make a sliver cross a plane more than twice; what does not fit is a point of the sliver.
+        // Rounding can make a sliver cross a plane more than twice; a corner that does not fit is a point of the
+        // sliver.
         if n < MAX_VERTICES {
             out[n] = v;
             n += 1;
@@ -135,7 +138,7 @@ fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize)
             let (inside, outside, near, far) =
                 if at_from >= 0.0 { (from, to, at_from, at_to) } else { (to, from, at_to, at_from) };
             let part = near / (near - far);
-            // A mean with two weights, neither of which loses what is small beside what is large.
+            // A mean with two weights, neither of which loses a small value next to a large one.
             let between = |k: usize| inside.clip[k] * (1.0 - part) + outside.clip[k] * part;
             push(Vertex { clip: [between(0), between(1), between(2)], screen: [f32::NAN; 3] });
         }
@@ -143,7 +146,7 @@ fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize)
     (out, n)
 }
 
-/// A new vertex to the screen, snapped.
+/// Projects a new vertex to the screen and snaps it.
 fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
     let limit = f64::from(1 << 26);
     let snap = |x: f64, scale: f32, half: f32| {
@@ -153,7 +156,8 @@ fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
 }
 
 impl Polygon {
-    /// The triangles of the polygon's fan that are on the screen and may face the eye, with their corners in set-up's order.
+    /// The triangles of the polygon's fan that are on the screen and may be front-facing, with their corners in
+    /// set-up's order.
     pub fn triangles<C: Coverage>(
         &self,
         camera: &Camera,
@@ -167,7 +171,7 @@ impl Polygon {
         })
     }
 
-    /// May triangle `k` of the fan face the eye?
+    /// May triangle `k` of the fan be front-facing?
     fn faces<C: Coverage>(&self, facing: Facing, k: usize) -> bool {
         let [[x0, y0, _], [x1, y1, _], [x2, y2, _]] = [self.corners[0], self.corners[k], self.corners[k + 1]];
         let (dx1, dy1) = (f64::from(x1) - f64::from(x0), f64::from(y1) - f64::from(y0));
@@ -178,7 +182,7 @@ impl Polygon {
         facing.both || area > -slack
     }
 
-    /// Does the box of triangle `k` of the fan overlap the screen?
+    /// Do the bounds of triangle `k` of the fan overlap the screen?
     fn on_screen(&self, camera: &Camera, k: usize) -> bool {
         let overlaps = |axis: usize, half: f32| {
             let [a, b, c] = [self.corners[0][axis], self.corners[k][axis], self.corners[k + 1][axis]];

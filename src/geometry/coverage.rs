@@ -1,26 +1,26 @@
-//! What it means that a triangle covers a pixel. This file holds every difference between drawing and querying a triangle.
+//! Defines when a triangle covers a pixel. This file holds every difference between drawing and querying a triangle.
 //!
-//! [`Exact`] coverage is that of a draw: the pixels whose centre is inside (top-left rule), and depths not nearer than the
-//! triangle. [`Conservative`] coverage is that of a query: every pixel that the true triangle touches, before its vertices
-//! were snapped, and depths not farther than the triangle. `docs/accuracy.md` says why the margins suffice.
+//! [`Exact`] coverage is used by draws: the pixels whose centre is inside (top-left rule), and depths not nearer than
+//! the triangle. [`Conservative`] coverage is used by queries: every pixel that the true triangle touches, before its
+//! vertices were snapped, and depths not farther than the triangle. `docs/accuracy.md` shows that the margins suffice.
 
 use crate::simd::Simd;
 
-/// Beyond this, in 1/256 pixel, f64 does not hold an edge's products, and edges are set up one by one.
+/// Beyond this, in 1/256 pixel, an edge's products do not fit in f64, and edges are set up one by one.
 pub(crate) const WIDE: f32 = (1 << 23) as f32;
 /// Half of the largest screen, in 1/256 pixel.
 const LARGEST_HALF: f32 = (1 << 21) as f32;
-/// Far more than any screen, in pixels: where an edge is put that bounds nothing.
+/// Position of an edge that bounds nothing, in pixels: far outside any screen.
 pub(crate) const UNBOUNDED: f32 = 1e30;
-/// Beyond every screen, in pixels, and still an integer.
+/// Outside every screen, in pixels, and still representable as an integer.
 const BEYOND: f32 = (1 << 20) as f32;
-/// One and a half units in the last place: from a vertex's rounded 1/w to a bound of the true one.
+/// One and a half units in the last place: the margin from a vertex's rounded 1/w to a bound of the true value.
 pub(crate) const VERTEX_MARGIN: f32 = 1.0 / (1 << 23) as f32;
-/// How far, in 1/256 pixel, a snapped vertex of a query may be from the true one, and a little.
+/// How far a query's snapped vertex may be from the true one, in 1/256 pixel, rounded up.
 const SNAP_SLACK: i32 = 2;
 
-/// The two sides of a triangle that begin at its topmost corner, in constant and slope: an edge's event in a row is the first
-/// pixel on or right of it.
+/// The two sides of a triangle that begin at its topmost corner, as constant and slope: an edge's event in a row is the
+/// first pixel on or to the right of it.
 pub(crate) struct Sides<S: Simd> {
     pub left: S::D,
     pub left_slope: S::D,
@@ -38,67 +38,69 @@ pub(crate) struct DepthPlane<S: Simd> {
     /// Per sub-tile.
     pub across_sub_tile: S::F,
     pub down_sub_tile: S::F,
-    /// Covers all roundings.
+    /// Covers all rounding errors.
     pub margin: S::F,
 }
 
 /// Exact or conservative coverage.
 pub(crate) trait Coverage {
-    /// Added to the least and the largest coordinate, in 1/256 pixel, before they are rounded down to whole pixels: the first
-    /// pixel, and the one after the last.
+    /// Added to the least and the largest coordinate, in 1/256 pixel, before they are rounded down to whole pixels:
+    /// gives the first pixel, and the one after the last.
     const TO_PIXELS: (i32, i32);
-    /// How far from the screen's centre a vertex may lie, in 1/256 pixel, without being clipped.
+    /// How far a vertex may be from the screen's centre, in 1/256 pixel, without being clipped.
     const GUARD_BAND: f32;
-    /// How far outside the screen, in 1/256 pixel, a triangle may lie and still be kept.
+    /// How far outside the screen a triangle may be, in 1/256 pixel, and still be kept.
     const SCREEN_SLACK: f32;
-    /// How far, in 1/256 pixel, projection and snapping may have moved two corners against each other, where it matters.
+    /// How far projection and snapping may have moved two corners relative to each other, in 1/256 pixel, where it
+    /// matters.
     const CORNER_SHIFT: f32;
-    /// Is a triangle without a pixel centre on the screen nothing?
+    /// Is a triangle ignored if it contains no pixel centre on the screen?
     const NEEDS_CENTRE: bool;
-    /// Must what cannot be projected count as being seen? A draw drops it.
+    /// Must triangles that cannot be projected count as visible? A draw drops them.
     const COUNTS_UNPROJECTABLE: bool;
     /// Can a triangle be too wide for edges in f64?
     const MAY_BE_WIDE: bool = Self::GUARD_BAND + 2.0 * LARGEST_HALF > WIDE;
 
-    /// Lanes where something at `nearest` and farther is hidden by everything at `z_min`.
+    /// Lanes in which everything at `nearest` and farther is hidden by a tile with this `z_min`.
     fn hidden<S: Simd>(s: S, nearest: S::F, z_min: S::F) -> S::M;
 
     /// The opposite of [`Self::hidden`].
     fn visible<S: Simd>(s: S, nearest: S::F, z_min: S::F) -> S::M;
 
-    /// Triangles that count, of those with a pixel in their bounds and this doubled area.
+    /// Of the triangles with a pixel in their bounds, those that count, given the doubled area.
     fn counts<S: Simd>(s: S, inside: S::M, area: S::F) -> S::M;
 
-    /// Triangles that snapping made degenerate or turned over, and that count nevertheless: their bounds stand for them.
+    /// Triangles that snapping made degenerate or flipped, and that count nevertheless: their bounds are used instead.
     fn degenerate<S: Simd>(s: S, active: S::M, area: S::F) -> S::M;
 
-    /// An edge through (x, y): the constant part of its event as a row's left bound and as its right bound, and its slope.
+    /// An edge through (x, y): the constant part of its event as a row's left and as its right bound, and its slope.
     /// `dy` is not negative.
     fn edge<S: Simd>(s: S, point: [S::D; 2], delta: [S::D; 2]) -> [S::D; 3];
 
-    /// Opens the sides of degenerate triangles.
+    /// Makes the sides of degenerate triangles unbounded.
     fn open_degenerate<S: Simd>(s: S, degenerate: S::M, sides: Sides<S>) -> Sides<S>;
 
-    /// An edge's event in rows.
+    /// An edge's events in rows.
     fn event<S: Simd>(s: S, constant: S::D, slope: S::D, row: S::D) -> S::D;
 
-    /// The columns that events are limited to: those of the bounds, or of the screen where that suffices.
+    /// The columns to which events are limited: those of the bounds, or of the screen where that suffices.
     fn columns<S: Simd>(s: S, screen_width: u32, bounds: impl FnOnce() -> (S::I, S::I)) -> (S::I, S::I);
 
-    /// The depth bound of the first sub-tile, and its change from sub-tile to sub-tile, across and down.
+    /// The depth bound of the first sub-tile, and its change per sub-tile, across and down.
     fn depth_bound<S: Simd>(s: S, degenerate: S::M, plane: &DepthPlane<S>) -> [S::F; 3];
 
-    /// What [`Self::clamp`] limits the bound to, from the farthest vertex and a bound of the nearest.
+    /// The limit that [`Self::clamp`] applies to the bound, from the farthest vertex and a bound of the nearest.
     fn depth_limit<S: Simd>(s: S, farthest: S::F, nearest: S::F) -> S::F;
 
-    /// The depth bound of a sub-tile, limited to the triangle's own depths.
+    /// The depth bound of a sub-tile, limited to the triangle's own depth range.
     fn clamp<S: Simd>(s: S, plane: S::F, limit: S::F) -> S::F;
 }
 
-/// Slope of an edge, and its place at row 0's centre in pixels from `left` (in 1/256 pixel) of pixel 0. Also one over `dy`.
+/// Slope of an edge, and its position at row 0's centre in pixels, measured from `left` (in 1/256 pixel). Also one over
+/// `dy`.
 #[inline(always)]
 fn line<S: Simd>(s: S, [x, y]: [S::D; 2], [dx, dy]: [S::D; 2], left: f64) -> [S::D; 3] {
-    // A quarter stands for zero: the caller puts such an edge out of the way.
+    // A quarter replaces zero: the caller makes such an edge unbounded.
     let inverse = s.div_d(s.d(1.0), s.max_d(dy, s.d(0.25)));
     let slope = s.mul_d(dx, inverse);
     let rows = s.mul_d(s.sub_d(s.d(128.0), y), s.d(1.0 / 256.0));
@@ -117,7 +119,7 @@ pub(crate) struct Exact;
 
 impl Coverage for Exact {
     const TO_PIXELS: (i32, i32) = (127, 127);
-    /// With the largest screen's centre added it stays below 2^26.
+    /// With the largest screen's centre added, coordinates stay below 2^26.
     const GUARD_BAND: f32 = ((1 << 26) - (1 << 21)) as f32;
     const SCREEN_SLACK: f32 = 0.0;
     const CORNER_SHIFT: f32 = 0.0;
@@ -156,13 +158,13 @@ impl Coverage for Exact {
         sides
     }
 
-    /// Exact however it is rounded, see `raster/setup.rs`.
+    /// Exact regardless of how the sum is rounded, see `raster/setup.rs`.
     #[inline(always)]
     fn event<S: Simd>(s: S, constant: S::D, slope: S::D, row: S::D) -> S::D {
         s.mul_add_d(slope, row, constant)
     }
 
-    /// Events lie between the corners, so only the screen limits them.
+    /// Events lie between the corners, so limiting them to the screen suffices.
     #[inline(always)]
     fn columns<S: Simd>(s: S, screen_width: u32, _: impl FnOnce() -> (S::I, S::I)) -> (S::I, S::I) {
         (s.i(0), s.i(screen_width as i32))
@@ -191,7 +193,7 @@ pub(crate) struct Conservative;
 
 impl Coverage for Conservative {
     const TO_PIXELS: (i32, i32) = (-SNAP_SLACK, 256 + SNAP_SLACK);
-    /// Four roundings of numbers below 2^23 and the snap move a vertex by less than 1.6 subpixels.
+    /// Four roundings of numbers below 2^23 plus the snap move a vertex by less than 1.6 subpixels.
     const GUARD_BAND: f32 = (1 << 22) as f32;
     const SCREEN_SLACK: f32 = 2.0;
     const CORNER_SHIFT: f32 = 4.0;
@@ -218,7 +220,7 @@ impl Coverage for Conservative {
         s.and_m(s.le(area, s.f(0.0)), active)
     }
 
-    /// From each row's upper to its lower end instead of at its centre, and with what snapping may have moved.
+    /// Evaluated at each row's upper and lower end instead of its centre, plus what snapping may have moved.
     #[inline(always)]
     fn edge<S: Simd>(s: S, point: [S::D; 2], delta: [S::D; 2]) -> [S::D; 3] {
         let [at, slope, _] = line(s, point, delta, 0.0);
@@ -227,7 +229,7 @@ impl Coverage for Conservative {
         [s.sub_d(at, slack), s.add_d(at, s.add_d(slack, s.d(1.0))), slope]
     }
 
-    /// Upright edges left and right of everything.
+    /// Vertical edges to the left and right of everything.
     #[inline(always)]
     fn open_degenerate<S: Simd>(s: S, degenerate: S::M, sides: Sides<S>) -> Sides<S> {
         let keep = s.to_d(s.select(degenerate, s.f(0.0), s.f(1.0)));
@@ -239,13 +241,13 @@ impl Coverage for Conservative {
         }
     }
 
-    /// Rounded twice everywhere, so that all instruction sets come to the same.
+    /// Rounded twice everywhere, so that all instruction sets give the same result.
     #[inline(always)]
     fn event<S: Simd>(s: S, constant: S::D, slope: S::D, row: S::D) -> S::D {
         s.add_d(constant, s.mul_d(slope, row))
     }
 
-    /// Events may lie beyond the corners, where an edge is nearly horizontal.
+    /// Events may lie beyond the corners if an edge is nearly horizontal.
     #[inline(always)]
     fn columns<S: Simd>(_: S, _: u32, bounds: impl FnOnce() -> (S::I, S::I)) -> (S::I, S::I) {
         bounds()
@@ -256,7 +258,7 @@ impl Coverage for Conservative {
         let &DepthPlane { first, across, down, across_sub_tile, down_sub_tile, margin } = plane;
         let zero = s.f(0.0);
         let nearest_corner = s.add(s.max(across_sub_tile, zero), s.max(down_sub_tile, zero));
-        // A true point of the occludee has the depth of its snapped counterpart, which may lie this far away.
+        // A true point of the occludee has the depth of its snapped counterpart, which may be this far away.
         let moved = s.mul(s.add(s.abs(across), s.abs(down)), s.f(SNAP_SLACK as f32));
         let bound = s.add(first, s.add(s.add(nearest_corner, moved), margin));
         [

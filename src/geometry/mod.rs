@@ -1,4 +1,5 @@
-//! From clip space to the screen: projection, clipping, screen bounds, and what "covers a pixel" means for a draw and a query.
+//! From clip space to the screen: projection, clipping, screen bounds, and the definition of coverage for draws and
+//! queries.
 
 pub(crate) mod camera;
 pub(crate) mod clip;
@@ -13,5 +14,5 @@ pub(crate) use screen_bounds::ScreenBounds;
 
 use crate::simd::Simd;
 
-/// A triangle's corner on the screen, in every lane: x and y in 1/256 pixel, whole numbers, and 1/w.
+/// A triangle's corner on the screen, for each lane: x and y in 1/256 pixel, as whole numbers, and 1/w.
 pub(crate) type Corner<S> = [<S as Simd>::F; 3];

@@ -1,12 +1,13 @@
-//! Vertices to the screen: transform, divide, snap to 1/256 pixel, mark what has to be clipped.
+//! Projects vertices to the screen: transform, divide, snap to 1/256 pixel, mark those that need clipping.
 //!
-//! A vertex is regular when it lies between the near plane and 2^40 and within the guard band around the screen:
-//! some 250,000 pixels for exact coverage, which is exact for whatever snapped coordinates come out; 16,384 pixels
-//! for conservative coverage, which has to bound where the true vertex is and so needs f32 to be finer than a subpixel. The x
-//! of the other vertices becomes a NaN that carries outcodes, so that a triangle outside one plane is still rejected in a vector.
+//! A vertex is regular if it is between the near plane and 2^40 and within the guard band around the screen. For exact
+//! coverage that is some 250,000 pixels, since any snapped coordinates are handled exactly; for conservative coverage
+//! it is 16,384 pixels, because the position of the true vertex must be bounded and f32 must therefore be finer than a
+//! subpixel. The x of other vertices becomes a NaN that carries outcodes, so that a triangle outside one plane is still
+//! rejected by the vector code.
 //!
-//! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the
-//! denormal numbers: the bits do not depend on whether the processor flushes those.
+//! Depths 1/w between 2^-40 and 2^40 keep every later product of depths and coordinates out of the denormal range, so
+//! the bits do not depend on whether the processor flushes denormals.
 
 use super::camera::{Camera, FARTHEST_W};
 use crate::simd::Simd;
@@ -19,11 +20,11 @@ pub(crate) mod outcode {
     pub const BELOW: u32 = 8;
     pub const ABOVE: u32 = 16;
     pub const ALL: u32 = 31;
-    /// What marks carry besides.
+    /// The other bits of a mark.
     pub const MARK: u32 = 0x7fc0_0000;
 }
 
-/// The rows of a matrix for x, y and w, each element in every lane.
+/// The rows of a matrix for x, y and w, each element broadcast to all lanes.
 pub(crate) struct MatrixRows<S: Simd>([[S::F; 4]; 3]);
 
 impl<S: Simd> MatrixRows<S> {
@@ -40,7 +41,7 @@ impl<S: Simd> MatrixRows<S> {
     }
 }
 
-/// A row of a matrix times (x, y, z, 1). The only place, so that every path rounds alike.
+/// A row of a matrix times (x, y, z, 1). The only place that does this, so that every path rounds alike.
 #[inline(always)]
 pub(crate) fn dot<S: Simd>(s: S, row: &[S::F; 4], x: S::F, y: S::F, z: S::F) -> S::F {
     s.add(s.add(s.mul(x, row[0]), s.mul(y, row[1])), s.add(s.mul(z, row[2]), row[3]))
@@ -64,7 +65,7 @@ pub(crate) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
     marks = s.or(marks, s.or(bit_where(s, s.lt(x, minus_w), outcode::LEFT), bit_where(s, s.lt(w, x), outcode::RIGHT)));
     marks = s.or(marks, s.or(bit_where(s, s.lt(y, minus_w), outcode::BELOW), bit_where(s, s.lt(w, y), outcode::ABOVE)));
-    // What is not finite is outside no plane: clipping counts it as dropped, or as visible.
+    // Values that are not finite are outside no plane: clipping then counts them as dropped or as visible.
     let largest = s.max(s.max(s.abs(x), s.abs(y)), s.abs(w));
     let finite = s.and_m(s.le(largest, s.f(f32::MAX)), s.and_m(s.eq(x, x), s.eq(y, y)));
     marks = s.select_i(finite, marks, s.i(outcode::MARK as i32));
@@ -122,7 +123,8 @@ mod tests {
         [(rng.f32() - 0.5) * size * w, (rng.f32() - 0.5) * size * w, w]
     }
 
-    /// Within the guard band of queries a snapped vertex is at most 1.6 subpixels from where it is in exact arithmetic.
+    /// Within the guard band of queries, a snapped vertex is at most 1.6 subpixels from its position in exact
+    /// arithmetic.
     #[test]
     fn regular_vertices_are_where_double_precision_puts_them() {
         let mut rng = Rng::with_seed(3);

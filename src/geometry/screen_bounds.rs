@@ -1,24 +1,24 @@
-//! Bounding boxes of a vector of triangles on the screen.
+//! Screen bounds of a vector of triangles.
 
 use super::Corner;
 use super::coverage::{Coverage, VERTEX_MARGIN};
 use crate::simd::Simd;
 
-/// The bounding boxes of a vector of triangles on the screen, in the pixels that count for their coverage.
+/// The screen bounds of a vector of triangles, in the pixels that their coverage considers.
 pub(crate) struct ScreenBounds<S: Simd> {
     /// The largest magnitude of a coordinate, in 1/256 pixel.
     pub widest: S::F,
-    /// Pixels on the screen, the last outside.
+    /// Pixels on the screen, end exclusive.
     pub column0: S::I,
     pub column1: S::I,
     pub row0: S::I,
     pub row1: S::I,
-    /// Tiles, the last inside.
+    /// Tiles, end inclusive.
     pub tile_x0: S::I,
     pub tile_x1: S::I,
     pub tile_y0: S::I,
     pub tile_y1: S::I,
-    /// Bounds that hold a pixel.
+    /// Bounds that contain a pixel.
     pub inside: S::M,
     /// A bound of the nearest corner's true 1/w.
     pub nearest: S::F,

@@ -1,7 +1,8 @@
-//! Vectors of sixteen lanes against those of eight: buffers, answers and statistics to the bit.
+//! Compares vectors of sixteen lanes with those of eight: buffers, answers and statistics must match to the bit.
 //!
-//! `tests/same_bits.rs` compares what the processor has. Blocks of two tiles, look-ups of 32 numbers and open tiles that are
-//! located are for sixteen lanes only, and many processors have no AVX-512: here two vectors of AVX2 stand for one of them.
+//! `tests/same_bits.rs` compares the instruction sets of the processor at hand. Blocks of two tiles, look-ups of 32
+//! values and the vectorised location of candidate tiles only exist with sixteen lanes, and many processors have no
+//! AVX-512: here two AVX2 vectors emulate one.
 
 #[path = "../../tests/scenes/mod.rs"]
 mod scenes;
@@ -16,7 +17,7 @@ use scenes::Scene;
 
 const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
 
-/// How an object is made, and its size.
+/// How an object is constructed, and its size.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     update_rule: UpdateRule,
@@ -36,8 +37,8 @@ impl Setting {
     }
 }
 
-/// Every rule and row direction, with statistics and without; blocks that the screen cuts, one that is half outside, and more
-/// columns than a vector has lanes.
+/// Every rule and row direction, with and without statistics; blocks crossed by the screen's edge, one that is half
+/// outside, and more columns than a vector has lanes.
 fn settings() -> Vec<Setting> {
     let mut all = Vec::new();
     for update_rule in RULES {
@@ -67,7 +68,7 @@ fn depths(moc: &MaskedOcclusionCulling, (w, h): (u32, u32)) -> Vec<u32> {
     depth.into_iter().map(f32::to_bits).collect()
 }
 
-/// What came of a scene.
+/// The outcome of a scene.
 #[derive(PartialEq)]
 struct Outcome {
     depths: Vec<u32>,
@@ -75,7 +76,7 @@ struct Outcome {
     statistics: String,
 }
 
-/// Compares what `play` makes of every scene and setting.
+/// Compares the outcome of `play` for every scene and setting.
 fn compare(play: impl Fn(&Scene, Setting) -> Outcome) {
     if !Implementation::available().contains(&Implementation::Avx2) {
         eprintln!("not compared: this processor has no AVX2");
@@ -108,7 +109,7 @@ fn draws_and_queries_are_the_same_on_sixteen_lanes() {
                 answers.push(moc.test_triangles(vertices(scene), object, &options).unwrap());
                 answers.push(moc.render_triangles(vertices(scene), object, &options).unwrap());
             }
-            // All at once, so that vectors are full.
+            // All in one call, so that vectors are full.
             answers.push(moc.test_triangles(vertices(scene), &scene.objects.concat(), &options).unwrap());
             outcome(&moc, setting, answers)
         });
@@ -145,7 +146,7 @@ fn lists_are_the_same_on_sixteen_lanes() {
         let (mut moc, options) =
             (setting.object(scene.near), DrawOptions::default().with_winding(BackfaceWinding::Clockwise));
         let triangles = scene.objects.concat();
-        // Bins with an odd number of rows of tiles are drawn on eight lanes.
+        // Bins with an odd number of tile rows are drawn with eight lanes.
         let (bins, (w, h)) = ((2, 3), setting.size);
         let mut memory = vec![vec![0.0; 9 * (triangles.len() + 64)]; 6];
         let mut lists: Vec<_> = memory.iter_mut().map(|memory| TriList::new(memory)).collect();
@@ -166,7 +167,7 @@ fn lists_are_the_same_on_sixteen_lanes() {
     });
 }
 
-/// Nothing wakes the pool's threads: who flushes does all of it, on this thread, in eight bins.
+/// Nothing wakes the pool's threads: the flushing thread does all the work, in eight bins.
 #[test]
 fn a_pool_is_the_same_on_sixteen_lanes() {
     compare(|scene, setting| {

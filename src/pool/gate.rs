@@ -1,7 +1,8 @@
-//! Access to a pool's object: calls that submit or query pass the gate, calls that exchange or resize the object shut it.
+//! Access to a pool's object: calls that submit or query take it shared, calls that exchange or resize the object take
+//! it exclusively.
 //!
-//! The object knows the gate of its pool ([`Attachment`](crate::attachment::Attachment)), so that direct queries of the object
-//! go through the pool while it draws, and so that neither is used by the other after it is gone.
+//! The object knows the gate of its pool ([`Attachment`](crate::attachment::Attachment)), so that direct queries of the
+//! object go through the pool while it draws, and so that neither uses the other after that is gone.
 
 use core::ptr::NonNull;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -17,11 +18,11 @@ pub(super) struct Gate {
     bins: Bins,
     /// Read-locked to submit or query, write-locked to exchange the target.
     target: RwLock<Option<Arc<Target>>>,
-    /// Held around each call while recording, so that the file has the calls in the order in which they are drawn.
+    /// Held around each call while recording, so that the file lists the calls in drawing order.
     recording: Mutex<()>,
 }
 
-/// The target, protected from being exchanged.
+/// Access to the target, which cannot be exchanged meanwhile.
 pub(super) type Pass<'a> = RwLockReadGuard<'a, Option<Arc<Target>>>;
 
 impl Gate {
@@ -29,10 +30,10 @@ impl Gate {
         Self { workers, bins, target: RwLock::new(None), recording: Mutex::new(()) }
     }
 
-    /// Draws into this object from now on, or into none, once what was submitted before is drawn. True: the pool owns it.
+    /// Draws what was submitted so far, then switches to this object, or to none. True: the pool owns it.
     ///
     /// # Errors
-    /// [`Taken`] if it belongs to another pool; nothing is changed.
+    /// [`Taken`] if it belongs to another pool; nothing changes.
     ///
     /// # Safety
     /// As [`Target::new`], until another one is set or [`Pool::forget`] is called.
@@ -58,7 +59,7 @@ impl Gate {
         Ok(())
     }
 
-    /// Flushes, and returns the object if the pool owns it. Any other object stays.
+    /// Flushes, and returns the object if the pool owns it. An object that it does not own stays attached.
     pub fn take_owned(&self) -> Option<MaskedOcclusionCulling> {
         let mut gate = self.shut();
         if !gate.as_ref()?.is_owned() {
@@ -78,13 +79,13 @@ impl Gate {
         *gate = None;
     }
 
-    /// Flushes, and applies a change to the object that may alter its size. Nothing is in flight, and no thread submits or
-    /// queries meanwhile.
+    /// Flushes, then applies a change to the object that may alter its size. Meanwhile nothing is in flight and no
+    /// thread submits or queries.
     pub fn resize(&self, change: impl FnOnce(&mut MaskedOcclusionCulling) -> Result<(), Error>) -> Result<(), Error> {
         let mut gate = self.shut();
         self.workers.flush();
         let target = gate.as_ref().ok_or(Error::NoObject)?;
-        // SAFETY: nothing is in flight, and no thread submits or queries while the gate is shut.
+        // SAFETY: nothing is in flight, and the write lock keeps threads from submitting or querying.
         change(unsafe { &mut *target.pointer().as_ptr() })?;
         self.cut_again(&mut gate);
         Ok(())
@@ -100,7 +101,7 @@ impl Gate {
         self.workers.set_target(gate.clone());
     }
 
-    /// The target, with bins that fit its object: after a flush the owner may have changed the resolution.
+    /// The target, with bins that fit its object: the owner may have changed the resolution after a flush.
     pub fn pass(&self) -> Pass<'_> {
         loop {
             let pass = self.target.read().unwrap_or_else(PoisonError::into_inner);
@@ -114,17 +115,17 @@ impl Gate {
         }
     }
 
-    /// The target, if its object has a buffer, which only objects of the C interface may lack.
+    /// The target, if its object has a buffer; only objects of the C interface may have none.
     ///
     /// # Errors
-    /// [`Error::NoObject`], and what the call returns.
+    /// [`Error::NoObject`], and any error of the call.
     pub fn with_buffer<R, E: From<Error>>(&self, call: impl FnOnce(&Target) -> Result<R, E>) -> Result<R, E> {
         let pass = self.pass();
         let target = pass.as_ref().filter(|target| target.moc().has_buffer()).ok_or(Error::NoObject)?;
         call(target)
     }
 
-    /// The target, if it is the object with this attachment.
+    /// The target, if its object is the one with this attachment.
     fn with_object_of<R>(&self, attachment: &Attachment, call: impl FnOnce(&Target) -> R) -> Option<R> {
         let pass = self.pass();
         let target = pass.as_ref().filter(|target| core::ptr::eq(target.moc().attachment(), attachment))?;
@@ -159,12 +160,12 @@ impl Gate {
 
     /// The recording lock, while calls are recorded.
     pub fn recording(&self, target: &Target) -> Option<MutexGuard<'_, ()>> {
-        // Its holder may do pool work meanwhile, which does not need the lock.
+        // The holder may do pool work meanwhile, which does not need this lock.
         target.moc().recorder().is_on().then(|| self.recording.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// Gives the target's object back for direct use.
+/// Returns the target's object to direct use.
 fn detach(target: &Option<Arc<Target>>) {
     if let Some(target) = target
         && !target.is_owned()

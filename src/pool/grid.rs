@@ -1,5 +1,5 @@
-//! Divides a buffer into bins: rectangles of whole coarse HiZ cells (128x64 pixels), so that each bin refreshes its cells by
-//! itself and no two bins share a block.
+//! Divides a buffer into bins: rectangles of whole coarse HiZ cells (128x64 pixels), so that each bin refreshes its own
+//! cells and no two bins share a block.
 
 use crate::buffer::TileRect;
 use crate::buffer::hiz::{COARSE_TILES_H, COARSE_TILES_W};
@@ -7,16 +7,16 @@ use crate::sink::BinBounds;
 
 /// The bins, row by row.
 pub(super) struct Grid {
-    /// Where columns and rows begin, in tiles, and where the last ends.
+    /// Where the columns and rows begin, in tiles, followed by where the last one ends.
     columns: Vec<u32>,
     rows: Vec<u32>,
     bounds: BinBounds,
 }
 
 impl Grid {
-    /// As equal as cells allow; as many as `bins_w * bins_h`, but not more than `most` or than there are cells.
+    /// Makes bins as equal as cells allow: `bins_w * bins_h` of them, but no more than `most` or than there are cells.
     ///
-    /// Rows first: `z_min` of a row of tiles is contiguous, and threads that draw left and right of each other would write to
+    /// Rows are divided first: `z_min` of a row of tiles is contiguous, and threads drawing side by side would write to
     /// the same cache lines.
     pub fn new(tiles: TileRect, bins_w: u32, bins_h: u32, most: u32) -> Self {
         let bins = bins_w.max(1).saturating_mul(bins_h.max(1)).min(most.max(1));
@@ -40,7 +40,7 @@ impl Grid {
         (self.columns.len() - 1) * (self.rows.len() - 1)
     }
 
-    /// Columns and rows.
+    /// The number of columns and rows.
     pub fn count(&self) -> (u32, u32) {
         (self.columns.len() as u32 - 1, self.rows.len() as u32 - 1)
     }
@@ -51,7 +51,7 @@ impl Grid {
         TileRect { x0: self.columns[x], y0: self.rows[y], x1: self.columns[x + 1], y1: self.rows[y + 1] }
     }
 
-    /// The bins that hold a tile of a rectangle, in order.
+    /// The bins that contain a tile of a rectangle, in order.
     pub fn touched(&self, tiles: TileRect) -> impl Iterator<Item = usize> {
         let among = |cuts: &[u32], first: u32, end: u32| {
             let bin = |tile: u32| cuts.partition_point(|&begin| begin <= tile).clamp(1, cuts.len() - 1) - 1;

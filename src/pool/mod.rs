@@ -1,24 +1,24 @@
-//! A pool of threads that draw: calls return at once, [`CullingThreadpool::flush`] waits until all of it is drawn.
+//! A pool of drawing threads: calls return at once, and [`CullingThreadpool::flush`] waits until everything is drawn.
 //!
 //! ```text
 //! render ──> batches    calls, in the order of submission
-//!            bin        a batch is projected and culled by one thread (see `sink/bin.rs`)
+//!            bin        one thread projects and culls a batch (see `sink/bin.rs`)
 //!            draw       each bin, a rectangle of the screen, draws the batches in order, one thread at a time
 //! ```
 //!
-//! A tile belongs to one bin, so it sees the triangles in the order of submission: the bits are those of one thread, whatever
-//! the number of threads and bins. `schedule.rs` decides who does what, `workers.rs` has the threads, `processor.rs` moves one
-//! that is woken on its waker's processor, `gate.rs` guards access to the object, `target.rs` has the bins and their locks,
-//! `grid.rs` the bins' rectangles on the screen.
+//! A tile belongs to exactly one bin, so it receives the triangles in the order of submission: the bits are those of
+//! one thread, whatever the number of threads and bins. `schedule.rs` assigns the work, `workers.rs` has the threads,
+//! `processor.rs` moves a thread that was woken on its waker's processor, `gate.rs` guards access to the object,
+//! `target.rs` has the bins and their locks, and `grid.rs` their rectangles on the screen.
 //!
-//! A call's arrays are read only to bin it. At most `max_jobs` calls are not yet binned when a call returns, so a
-//! program may rotate among `max_jobs` + 1 arrays without a flush. Whether binned calls are drawn yet is visible only to
-//! queries.
+//! A call's arrays are only read to bin it. When a call returns, at most `max_jobs` calls are not yet binned, so a
+//! program may rotate among `max_jobs` + 1 arrays without a flush. Only queries can tell whether binned calls have been
+//! drawn yet.
 //!
-//! Threads without work sleep. A caller who finds no room for another batch works until there is, and so does a flushing
-//! thread: a sleeping thread takes tens of microseconds to wake, long enough to draw a small frame. When there is nothing for
-//! such a caller to do, it spins for 20 microseconds before it sleeps, as worker threads do. Threads beyond the processors are
-//! not started: they would only take turns with the others, and interrupt one that holds a bin.
+//! Threads without work sleep. A caller that finds no room for another batch works until there is, and so does a
+//! flushing thread, because waking a sleeping thread may take longer than drawing a small frame. If there is nothing
+//! for such a caller to do, it spins briefly before it sleeps, as worker threads do. No more threads are started than
+//! there are processors: they would only compete with the others and could preempt one that holds a bin.
 
 mod gate;
 mod grid;
@@ -48,16 +48,16 @@ pub use settings::{ThreadStart, ThreadpoolSettings};
 use target::{Bins, Call, Shared, Work};
 use workers::Workers;
 
-/// A larger number is a mistake.
+/// Larger numbers are assumed to be mistakes.
 const MAX_THREADS: u32 = 1024;
-/// More bins bring threads no more to do: triangles that reach several are set up for each.
+/// More bins do not give threads more to do: triangles that reach several bins are set up once for each.
 const BINS_PER_THREAD: u32 = 4;
-/// Larger calls are cut, so that several threads can project them.
+/// Larger calls are split, so that several threads can project them.
 const CALL_TRIANGLES: usize = 1536;
 
-/// Threads that draw into a [`MaskedOcclusionCulling`], with the bits that one thread would give.
+/// Draws into a [`MaskedOcclusionCulling`] with several threads, and gives the same bits as one thread.
 ///
-/// Several threads may submit and query at once; calls of one thread take effect in its order.
+/// Several threads may submit and query at once; the calls of one thread take effect in order.
 ///
 /// ```
 /// use masked_occlusion_culling::{
@@ -66,16 +66,16 @@ const CALL_TRIANGLES: usize = 1536;
 ///
 /// let culling = MaskedOcclusionCulling::new(640, 360, Settings::default())?;
 /// let pool = CullingThreadpool::new(ThreadpoolSettings::default().with_threads(2))?;
-/// // The pool has the object until it hands it back.
+/// // The pool owns the object until it returns it.
 /// pool.set_buffer(culling);
 /// pool.wake_threads();
 ///
-/// // A wall 10 before the eye, which looks along -z: w is -z.
+/// // A wall 10 in front of the eye, which looks along -z: w is -z.
 /// let wall = [[-20.0, -20.0, -10.0], [20.0, -20.0, -10.0], [20.0, 20.0, -10.0], [-20.0, 20.0, -10.0]];
 /// let perspective = [1.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, -0.2, 0.0];
 /// let wall = Vertices::model_space(&wall, perspective);
 /// pool.clear_buffer()?;
-/// // Returns at once; all of it is drawn when the scope ends.
+/// // Returns at once; everything is drawn when the scope ends.
 /// pool.scope(|scope| scope.render_triangles(wall, &[0, 1, 2, 0, 2, 3], &DrawOptions::default()))?;
 /// assert_eq!(pool.test_rect(-0.1, -0.1, 0.1, 0.1, 12.0)?, CullingResult::Occluded);
 /// let culling = pool.take_buffer().expect("it was given");
@@ -88,7 +88,7 @@ pub struct CullingThreadpool {
 }
 
 impl CullingThreadpool {
-    /// A pool whose threads sleep until [`Self::wake_threads`].
+    /// Makes a pool whose threads sleep until [`Self::wake_threads`].
     ///
     /// # Errors
     /// [`Error::InvalidSize`] if `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` is above 1,024; [`Error::OutOfMemory`] if
@@ -112,14 +112,14 @@ impl CullingThreadpool {
             let (workers, started) = (workers.clone(), started.clone());
             let work = move || {
                 if let Some(started) = &started {
-                    // If the callback panics, the thread works all the same.
+                    // If the callback panics, the thread still works.
                     let _ = catch_unwind(AssertUnwindSafe(|| started(number)));
                 }
                 // The callback may have changed the environment.
                 in_default_environment(|| workers.work(number as usize));
             };
             let name = thread_name(&settings.thread_name, number);
-            // Those that did start end with the pool.
+            // If this fails, the threads already started end with the pool.
             let start = thread::Builder::new().name(name);
             pool.threads.push(start.spawn(work).map_err(|_| Error::OutOfMemory)?);
         }
@@ -139,53 +139,54 @@ impl CullingThreadpool {
         self.gate.with_buffer(|target| Ok(target.bin_count()))
     }
 
-    /// Lets the threads work. A second time changes nothing.
+    /// Lets the threads work. Has no effect if they are awake already.
     pub fn wake_threads(&self) {
         self.gate.workers.set_suspended(false);
     }
 
-    /// Draws what was submitted, then puts the threads to sleep. Work submitted later waits until they are woken, or until a
-    /// call flushes or does the work ([`Self::work_once`]).
+    /// Draws everything submitted, then puts the threads to sleep. Work submitted later waits until they are woken, or
+    /// until a call flushes or does the work ([`Self::work_once`]).
     pub fn suspend_threads(&self) {
         self.flush();
         self.gate.workers.set_suspended(true);
     }
 
-    /// Waits until everything that was submitted before is drawn.
+    /// Waits until everything submitted so far is drawn.
     pub fn flush(&self) {
         self.gate.workers.flush();
     }
 
-    /// Does one piece of pending work on the calling thread and returns: for jobs of an engine's own job system, alongside the
-    /// pool's threads or instead of them. False: nothing is pending that is not already being worked on.
+    /// Does one piece of pending work on the calling thread and returns: for use in jobs of an engine's own job system,
+    /// alongside the pool's threads or instead of them. Returns false if nothing is pending that is not already being
+    /// worked on.
     pub fn work_once(&self) -> bool {
         self.gate.workers.work_once()
     }
 
-    /// Whether everything submitted is drawn. Calling [`Self::work_once`] in a loop until then is a flush that never sleeps.
+    /// Whether everything submitted has been drawn. Calling [`Self::work_once`] in a loop until then is a flush that
+    /// never sleeps.
     pub fn is_done(&self) -> bool {
         self.gate.workers.is_done()
     }
 
-    /// Draws into this object from now on, which the pool owns until [`Self::take_buffer`]. One that it had is dropped, after
-    /// what was submitted is drawn.
+    /// Sets the object to draw into, which the pool owns until [`Self::take_buffer`]. A previous object that the pool
+    /// owns is dropped once everything submitted is drawn.
     pub fn set_buffer(&self, moc: MaskedOcclusionCulling) {
         let moc = NonNull::from(Box::leak(Box::new(moc)));
-        // SAFETY: leaked just now, and freed with the target.
+        // SAFETY: just leaked, and freed with the target.
         let done = unsafe { self.gate.exchange(Some((moc, true))) };
         debug_assert!(done.is_ok(), "no other pool has it");
     }
 
-    /// Flushes, and hands the object back. Nothing where there is none that the pool owns.
+    /// Flushes, and returns the object; `None` if the pool does not own one.
     pub fn take_buffer(&self) -> Option<MaskedOcclusionCulling> {
         self.gate.take_owned()
     }
 
-    /// Draws into this object from now on, or into none, once what was submitted before is drawn. The object keeps its near
-    /// plane.
+    /// Draws what was submitted so far, then switches to this object, or to none. The object keeps its near plane.
     ///
     /// # Errors
-    /// [`Taken`] if the object belongs to another pool; nothing is changed.
+    /// [`Taken`] if the object belongs to another pool; nothing changes.
     ///
     /// # Safety
     /// The object does not move until another one is set, the pool is dropped, or the object itself is dropped; the two may be
@@ -196,10 +197,10 @@ impl CullingThreadpool {
         unsafe { self.gate.exchange(moc.map(|moc| (moc, false))) }
     }
 
-    /// Gives the object another resolution, after what was submitted is drawn, and clears it.
+    /// Draws everything submitted, then changes the object's resolution and clears it.
     ///
     /// # Errors
-    /// [`Error::NoObject`]; as [`MaskedOcclusionCulling::set_resolution`].
+    /// [`Error::NoObject`], and those of [`MaskedOcclusionCulling::set_resolution`].
     pub fn set_resolution(&self, width: u32, height: u32) -> Result<(), Error> {
         self.gate.resize(|moc| moc.set_resolution(width, height))
     }
@@ -207,7 +208,8 @@ impl CullingThreadpool {
     /// Flushes, and sets the object's near plane, in clip-space w.
     ///
     /// # Errors
-    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged. [`Error::NoObject`].
+    /// [`Error::InvalidNumber`] for NaN or infinity: the near plane is unchanged. [`Error::NoObject`] if there is no
+    /// object.
     pub fn set_near_clip_plane(&self, near: f32) -> Result<(), Error> {
         self.flush();
         if !near.is_finite() {
@@ -219,7 +221,7 @@ impl CullingThreadpool {
         target.moc().set_near_shared(near)
     }
 
-    /// Flushes, and clears the object. The buffer is clear when it returns.
+    /// Flushes, and clears the object. The buffer is clear when this returns.
     ///
     /// # Errors
     /// [`Error::NoObject`].
@@ -232,7 +234,7 @@ impl CullingThreadpool {
         })
     }
 
-    /// Draws inside of `calls` what lives at least as long as that takes, and flushes at its end.
+    /// Draws, within `calls`, data that outlives the scope, and flushes at its end.
     ///
     /// # Panics
     /// If `calls` does.
@@ -241,14 +243,14 @@ impl CullingThreadpool {
         calls(&scope)
     }
 
-    /// Draws occluders, in order with the calls around it; see [`MaskedOcclusionCulling::render_triangles`]. Returns at once, or
-    /// works when there is no room.
+    /// Draws occluders, in order with the calls around it; see [`MaskedOcclusionCulling::render_triangles`]. Returns at
+    /// once, or does some of the work if there is no room.
     ///
     /// # Safety
-    /// The vertices and the indices stay as they are until the pool was flushed.
+    /// The vertices and the indices must not change until the pool has been flushed.
     ///
     /// # Errors
-    /// As there, and [`Error::NoObject`].
+    /// Those of that method, and [`Error::NoObject`].
     pub unsafe fn render_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -265,7 +267,8 @@ impl CullingThreadpool {
         }
     }
 
-    /// A draw that is refused counts as one without triangles: a program that rotates among arrays does not see its status in C++.
+    /// A rejected draw counts as one without triangles, because a C++ program that rotates among arrays does not see
+    /// its status.
     pub(crate) fn refuse(&self) {
         let vertices = VertexSource { base: core::ptr::null(), layout: VertexLayout::CLIP_SPACE };
         let (triangles, options) = (NonNull::<u32>::dangling().as_ptr().cast_const(), DrawOptions::default());
@@ -278,8 +281,8 @@ impl CullingThreadpool {
     }
 
     /// # Safety
-    /// Every vertex from the lowest to the highest index of the mesh can be read, and they and the indices stay as they are
-    /// until the pool was flushed.
+    /// Every vertex from the lowest to the highest index of the mesh can be read; the vertices and the indices do not
+    /// change until the pool has been flushed.
     pub(crate) unsafe fn render_mesh(&self, mesh: &Mesh<'_>) -> Result<(), Error> {
         let (vertices, triangles, matrix, options) = (mesh.vertices(), mesh.triangles(), mesh.matrix(), mesh.options());
         self.gate.with_buffer(|target| {
@@ -287,7 +290,7 @@ impl CullingThreadpool {
             let near = target.moc().near_clip_plane();
             let mut rest = triangles;
             loop {
-                // A call without triangles is one part, too: it counts among those whose arrays a program rotates.
+                // A call without triangles is one part too: it counts among those whose arrays a program rotates.
                 let (part, later) = rest.split_at(rest.len().min(3 * CALL_TRIANGLES));
                 let (triangles, indices) = (part.as_ptr(), part.len());
                 let (matrix, options) = (matrix.copied(), *options);
@@ -303,17 +306,17 @@ impl CullingThreadpool {
         })
     }
 
-    /// Folds other buffers into the pool's, in order with the calls around it, each bin by a thread; see
+    /// Merges other buffers into the pool's, in order with the calls around it, with a thread per bin; see
     /// [`MaskedOcclusionCulling::merge_buffers`].
     ///
     /// # Safety
-    /// The others stay where they are, and nobody changes them, until the pool was flushed.
+    /// The others must not move or change until the pool has been flushed.
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method, and [`Error::NoObject`].
     pub unsafe fn merge_buffers(&self, others: &[&MaskedOcclusionCulling]) -> Result<(), Error> {
         self.gate.with_buffer(|target| {
-            // With itself changes nothing.
+            // Merging a buffer with itself has no effect.
             let others = others.iter().copied().filter(|&other| NonNull::from(other) != target.pointer());
             let others: Vec<&MaskedOcclusionCulling> = others.collect();
             target.moc().mergeable(&others)?;
@@ -323,7 +326,7 @@ impl CullingThreadpool {
         })
     }
 
-    /// Tests a rectangle against what is drawn by now; see [`MaskedOcclusionCulling::test_rect`].
+    /// Tests a rectangle against what has been drawn so far; see [`MaskedOcclusionCulling::test_rect`].
     ///
     /// # Errors
     /// [`Error::NoObject`].
@@ -338,11 +341,11 @@ impl CullingThreadpool {
         self.gate.with_buffer(|target| Ok(self.gate.rect(target, [x_min, y_min, x_max, y_max], w_min)))
     }
 
-    /// Tests occludees against what is drawn by now; see [`MaskedOcclusionCulling::test_triangles`]. `Visible` where they are
-    /// hidden only by what a clear that was submitted will take away, also if they pass by every pixel.
+    /// Tests occludees against what has been drawn so far; see [`MaskedOcclusionCulling::test_triangles`]. The answer
+    /// is `Visible` if they are hidden only by contents that a pending clear will remove, even if they touch no pixel.
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method, and [`Error::NoObject`].
     pub fn test_triangles(
         &self,
         vertices: Vertices<'_>,
@@ -358,7 +361,7 @@ impl CullingThreadpool {
         self.gate.with_buffer(|target| Ok(self.gate.mesh(target, mesh)))
     }
 
-    /// Looks at the object itself, which has a buffer.
+    /// Gives access to the object itself, which has a buffer.
     pub(crate) fn with_object<R, E: From<Error>>(
         &self,
         look: impl FnOnce(&MaskedOcclusionCulling) -> Result<R, E>,
@@ -369,12 +372,12 @@ impl CullingThreadpool {
     /// Flushes, and writes the depth of every pixel; see [`MaskedOcclusionCulling::compute_pixel_depth_buffer`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method, and [`Error::NoObject`].
     pub fn compute_pixel_depth_buffer(&self, depth: &mut [f32], flip_y: bool) -> Result<(), Error> {
         self.with_pixels(|_| Ok::<_, Error>(depth), flip_y)
     }
 
-    /// The same into an array that is found when its length is known.
+    /// The same, into an array that is obtained once its length is known.
     pub(crate) fn with_pixels<'a, E: From<Error>>(
         &self,
         array: impl FnOnce(usize) -> Result<&'a mut [f32], E>,
@@ -388,7 +391,7 @@ impl CullingThreadpool {
         self.gate.with_buffer(|target| target.look(target.all_tiles(), write).0)
     }
 
-    /// What the object counted, after a flush; see [`MaskedOcclusionCulling::statistics`].
+    /// Flushes, and returns the object's counts; see [`MaskedOcclusionCulling::statistics`].
     ///
     /// # Errors
     /// [`Error::NoObject`].
@@ -405,13 +408,13 @@ impl fmt::Debug for CullingThreadpool {
 }
 
 impl Drop for CullingThreadpool {
-    /// Draws what was submitted and ends the threads.
+    /// Draws everything submitted and ends the threads.
     fn drop(&mut self) {
-        // Detached here, so that the object may be dropped before or after the pool.
+        // Detached here, so that the object and the pool may be dropped in either order.
         self.gate.close();
         self.gate.workers.stop();
         for thread in self.threads.drain(..) {
-            // What a thread says when it ends in a panic, it has said already.
+            // A thread that panicked has already reported it.
             let _ = thread.join();
         }
     }
@@ -419,16 +422,16 @@ impl Drop for CullingThreadpool {
 
 /// The name of a thread as the system shows it.
 fn thread_name(prefix: &str, number: u32) -> String {
-    // Cut at a NUL, which the system does not accept.
+    // Truncated at a NUL, which the system does not accept.
     let prefix: String = prefix.chars().take_while(|&c| c != '\0').collect();
     format!("{prefix} {number}")
 }
 
-/// Calls of a [`CullingThreadpool::scope`].
+/// The calls available in [`CullingThreadpool::scope`].
 #[derive(Debug)]
 pub struct Scope<'e> {
     pool: &'e CullingThreadpool,
-    /// Invariant, so that what is lent cannot be made to live shorter.
+    /// Invariant, so that the lifetime of lent data cannot be shortened.
     lives: PhantomData<core::cell::Cell<&'e ()>>,
 }
 
@@ -436,23 +439,23 @@ impl<'e> Scope<'e> {
     /// As [`CullingThreadpool::render_triangles`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method.
     pub fn render_triangles(
         &self,
         vertices: Vertices<'e>,
         triangles: &'e [u32],
         options: &DrawOptions,
     ) -> Result<(), Error> {
-        // SAFETY: they are lent for longer than the scope, which flushes when it ends.
+        // SAFETY: the data outlives the scope, which flushes when it ends.
         unsafe { self.pool.render_triangles(vertices, triangles, options) }
     }
 
     /// As [`CullingThreadpool::merge_buffers`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of that method.
     pub fn merge_buffers(&self, others: &[&'e MaskedOcclusionCulling]) -> Result<(), Error> {
-        // SAFETY: as above; what the pool owns cannot be lent.
+        // SAFETY: as above; objects that the pool owns cannot be lent.
         unsafe { self.pool.merge_buffers(others) }
     }
 }

@@ -1,9 +1,9 @@
-//! On which processor a thread runs.
+//! The processor on which a thread runs.
 //!
-//! A thread that is woken should work beside who woke it, not in turn with it. Linux sees to that, but as the guest of a
-//! hypervisor it seems to take a processor that sleeps for one that it was not given: now and then a thread was woken on the
-//! processor of who woke it, and then again and again, for it ran there last and frames are too short for loads to be
-//! balanced. A pool of one thread drew a castle at half of its speed then, frame after frame.
+//! A woken thread should run alongside its waker, not compete with it for a processor. Linux takes care of that, but as
+//! a guest of a hypervisor it seems to mistake a sleeping processor for one that it does not have: occasionally a
+//! thread is woken on its waker's processor, and then again every time, because it last ran there and frames are too
+//! short for load balancing. The pool then runs at a fraction of its speed, frame after frame.
 
 /// A processor's number.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -11,31 +11,32 @@ pub(super) struct Processor(usize);
 
 #[cfg(target_os = "linux")]
 impl Processor {
-    /// The one that the calling thread runs on.
+    /// The processor on which the calling thread is running.
     pub fn current() -> Option<Self> {
         // SAFETY: it has no requirements.
         usize::try_from(unsafe { libc::sched_getcpu() }).ok().map(Self)
     }
 
-    /// Moves the calling thread to another one of those that it may run on, if there is one; it may come back. False: do not
-    /// try again, because it failed or because something else sets the thread's affinity.
+    /// Moves the calling thread to another processor of its affinity mask, if there is one; it may come back. Returns
+    /// false if there is no point in trying again, because it failed or because something else sets the thread's
+    /// affinity.
     ///
-    /// On newer kernels the thread then keeps to the processors that there were, if others are added to the machine.
+    /// On newer kernels the thread will then not use processors that are added to the machine later.
     #[must_use]
     pub fn leave(self) -> bool {
         self.leave_while(|| ())
     }
 
-    /// `meanwhile` runs once the thread has moved and may not return yet. An affinity that the program sets on the thread by
-    /// then is kept, because it differs from the one set here. Linux has no atomic compare-and-set for this, so an
-    /// affinity set between the check and the write, a system call apart, is lost.
+    /// `meanwhile` runs after the thread has moved and before it may return. If the program sets an affinity on the
+    /// thread by then, it is kept, because it differs from the one set here. Linux has no atomic compare-and-set for
+    /// this, so an affinity that is set between the check and the write, which are one system call apart, is lost.
     fn leave_while(self, meanwhile: impl FnOnce()) -> bool {
         let Some(all) = affinity() else { return false };
         let mut others = all;
         if self.0 >= 8 * size_of_val(&others) {
             return false;
         }
-        // SAFETY: the two are sets, and the number is one of their bits.
+        // SAFETY: both are valid sets, and the number is one of their bits.
         unsafe {
             if libc::CPU_COUNT(&all) < 2 {
                 return false;
@@ -46,7 +47,7 @@ impl Processor {
             return false;
         }
         meanwhile();
-        // SAFETY: both are sets.
+        // SAFETY: both are valid sets.
         let is_ours = affinity().is_some_and(|now| unsafe { libc::CPU_EQUAL(&now, &others) });
         is_ours && set_affinity(&all)
     }
@@ -55,7 +56,7 @@ impl Processor {
 /// The processors that the calling thread may run on.
 #[cfg(target_os = "linux")]
 fn affinity() -> Option<libc::cpu_set_t> {
-    // SAFETY: a set is an array of integers, for which zeros will do, and the size is its own. 0 is the calling thread.
+    // SAFETY: a set is an array of integers, which may be all zeros, and the size is its own. 0 is the calling thread.
     unsafe {
         let mut set: libc::cpu_set_t = core::mem::zeroed();
         (libc::sched_getaffinity(0, size_of_val(&set), &mut set) == 0).then_some(set)
@@ -64,7 +65,7 @@ fn affinity() -> Option<libc::cpu_set_t> {
 
 #[cfg(target_os = "linux")]
 fn set_affinity(set: &libc::cpu_set_t) -> bool {
-    // SAFETY: a set and its size. 0 is the calling thread.
+    // SAFETY: a valid set and its size. 0 is the calling thread.
     unsafe { libc::sched_setaffinity(0, size_of_val(set), set) == 0 }
 }
 
@@ -84,14 +85,14 @@ mod tests {
     use super::{Processor, affinity, set_affinity};
 
     fn equal(a: &libc::cpu_set_t, b: &libc::cpu_set_t) -> bool {
-        // SAFETY: both are sets.
+        // SAFETY: both are valid sets.
         unsafe { libc::CPU_EQUAL(a, b) }
     }
 
     #[test]
     fn who_leaves_a_processor_may_run_on_it_as_before() {
         let before = affinity().unwrap();
-        // With one processor there is none to go to.
+        // With one processor there is nowhere to go.
         let _ = Processor::current().unwrap().leave();
         assert!(equal(&before, &affinity().unwrap()));
         assert!(!Processor(usize::MAX).leave());
@@ -102,7 +103,7 @@ mod tests {
     fn an_affinity_that_the_program_sets_meanwhile_stays() {
         let before = affinity().unwrap();
         let here = Processor::current().unwrap();
-        // SAFETY: sets are arrays of integers, for which zeros will do, and the number is that of a processor.
+        // SAFETY: sets are arrays of integers, which may be all zeros, and the number is that of a processor.
         let (several, pinned) = unsafe {
             let mut pinned: libc::cpu_set_t = core::mem::zeroed();
             libc::CPU_SET(here.0, &mut pinned);

@@ -1,36 +1,37 @@
-//! Who may do what next: the order of a pool's work, and nothing else.
+//! The schedule: which work may be done next, and nothing else.
 //!
-//! Calls are gathered into batches. A batch is first binned (projected, by one thread), then drawn by every bin, a part of the
-//! screen, and every bin draws the batches in the order in which they were submitted, one thread at a time. So each tile sees the
-//! same triangles in the same order as on one thread, whatever the threads do meanwhile.
+//! Calls are gathered into batches. A batch is first binned (projected, by one thread), then drawn by every bin, which
+//! is a part of the screen. Every bin draws the batches in the order of submission, one thread at a time. So each tile
+//! receives the same triangles in the same order as with one thread, whatever the threads do meanwhile.
 //!
-//! This is a plain state machine; the pool holds it under one lock, and does the work outside of the lock. A ready-made
-//! queue or a work-stealing pool knows no order per bin: each batch would have to wait for the one before it.
+//! This is a plain state machine; the pool keeps it under one lock and does the work outside the lock. A ready-made
+//! queue or a work-stealing pool cannot express an order per bin: each batch would have to wait for the previous one.
 
 use std::collections::VecDeque;
 
-/// A batch takes calls until they weigh so much: triangles, and something for each call.
+/// A batch accepts calls until it has this weight: the triangles, plus a constant for each call.
 pub(super) const BATCH_WEIGHT: usize = 2048;
-/// What a call weighs besides its triangles.
+/// The weight of a call in addition to its triangles.
 pub(super) const CALL_WEIGHT: usize = 16;
-/// An open batch that weighs so much is worth a thread's while.
+/// An open batch of this weight is worth a thread's time.
 pub(super) const WORTHWHILE: usize = 512;
-/// So much may be ready that a thread's own bin did not draw, before the thread draws it instead of binning more.
+/// The weight of ready work by which a thread's own bin may lag behind before the thread draws instead of binning more.
 const LEAD: usize = 5 * BATCH_WEIGHT / 2;
-/// The same of a bin that another thread drew in last, whose tiles are in the cache of that one, or that nobody drew in yet.
+/// The same for a bin in which another thread drew last, so that its tiles are in that thread's cache, or in which
+/// nobody has drawn yet.
 const FOREIGN_BIN_LAG: usize = 2 * LEAD;
-/// Batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
+/// The most batches that a bin draws in one go, so that queries of its tiles need not wait for all of them.
 const AT_ONCE: usize = 16;
 
 /// Makes the schedule panic, to test what happens then.
 #[cfg(test)]
 pub(super) static BREAKS: core::sync::atomic::AtomicBool = core::sync::atomic::AtomicBool::new(false);
 
-/// What a thread is to do.
+/// A thread's next task.
 pub(super) enum Task<C, W> {
-    /// Bin these calls, and report them with [`Schedule::binned`].
+    /// Bin these calls, then call [`Schedule::binned`].
     Bin { batch: u64, calls: Vec<C> },
-    /// Draw these into the bin, in order, and say so by [`Schedule::drawn`].
+    /// Draw these into the bin, in order, then call [`Schedule::drawn`].
     Draw { bin: usize, work: Vec<W> },
 }
 
@@ -44,7 +45,7 @@ enum Stage<C, W> {
 
 struct Batch<C, W> {
     stage: Stage<C, W>,
-    /// Bins that did not draw it yet.
+    /// Number of bins that have not drawn it yet.
     bins_left: usize,
     /// Application calls that end in this batch: a large call is submitted in parts.
     ends: usize,
@@ -56,9 +57,9 @@ struct Batch<C, W> {
 struct Bin {
     /// Number of the batch to be drawn next.
     next: u64,
-    /// Somebody draws in it.
+    /// A thread is drawing in it.
     busy: bool,
-    /// Who did so last.
+    /// The thread that drew in it last.
     thread: usize,
 }
 
@@ -66,18 +67,18 @@ struct Bin {
 pub(super) struct Schedule<C, W> {
     bins: Vec<Bin>,
     batches: VecDeque<Batch<C, W>>,
-    /// Number of the first of them, of the first that may be still open, and of the first that is not ready.
+    /// Number of the first batch in flight, of the first that may still be open, and of the first that is not ready.
     first: u64,
     open: u64,
     ready: u64,
-    /// Maximum of batches in flight, and of calls whose arrays are still read.
+    /// Maximum number of batches in flight, and of calls whose arrays are still read.
     max: usize,
-    /// Calls whose arrays are still read.
+    /// Number of calls whose arrays are still read.
     calls: usize,
 }
 
 impl<C, W: Clone> Schedule<C, W> {
-    /// For `bins` bins. At most `max` batches are in flight, and at most `max` calls wait to be binned ("binned").
+    /// A schedule for `bins` bins, with at most `max` batches in flight and at most `max` calls waiting to be binned.
     pub fn new(bins: usize, max: usize) -> Self {
         let (first, open, ready) = (0, 0, 0);
         Self {
@@ -91,17 +92,17 @@ impl<C, W: Clone> Schedule<C, W> {
         }
     }
 
-    /// Numbers of the first batch in flight, and of the next to come.
+    /// Numbers of the first batch in flight and of the next batch to come.
     pub fn in_flight(&self) -> core::ops::Range<u64> {
         self.first..self.first + self.batches.len() as u64
     }
 
-    /// Nothing is in flight.
+    /// Is nothing in flight?
     pub fn is_done(&self) -> bool {
         self.batches.is_empty()
     }
 
-    /// Gives it other bins.
+    /// Changes the number of bins.
     ///
     /// # Panics
     /// If something is in flight.
@@ -110,8 +111,8 @@ impl<C, W: Clone> Schedule<C, W> {
         self.bins = (0..bins).map(|thread| Bin { next: self.first, busy: false, thread }).collect();
     }
 
-    /// Accepts a call or part of one, or returns it if there is no room. `weight`: its triangles; `ends`: it completes the
-    /// call. True: there is now something worth waking a thread for.
+    /// Accepts a call or a part of one, or returns it if there is no room. `weight`: its triangles; `ends`: it
+    /// completes the call. True: there is now enough work to wake a thread.
     pub fn submit(&mut self, call: C, weight: usize, ends: bool) -> Result<bool, C> {
         if ends && self.calls >= self.max {
             return Err(call);
@@ -137,7 +138,7 @@ impl<C, W: Clone> Schedule<C, W> {
         Ok(closes || weight >= WORTHWHILE || most == 1)
     }
 
-    /// The most calls in a batch: with half of those that may wait, one batch fills while another is binned.
+    /// The most calls in a batch: half of those that may wait, so that one batch fills while another is binned.
     fn batch_calls(&self) -> usize {
         self.max.div_ceil(2)
     }
@@ -147,7 +148,7 @@ impl<C, W: Clone> Schedule<C, W> {
         self.batches.len() >= self.max
     }
 
-    /// Accepts work that need not be binned first.
+    /// Accepts work that needs no binning.
     ///
     /// # Panics
     /// If it is full.
@@ -172,27 +173,27 @@ impl<C, W: Clone> Schedule<C, W> {
         self.ready = ready;
     }
 
-    /// Something to do for a thread, if there is.
+    /// A task for a thread, if there is one.
     pub fn claim(&mut self, thread: usize) -> Option<Task<C, W>> {
         self.claim_worthwhile(thread).or_else(|| self.claim_batch(0))
     }
 
-    /// The same, except for an open batch that is too light to be worth taking yet.
+    /// The same, except for an open batch that is still too light.
     pub fn claim_worthwhile(&mut self, thread: usize) -> Option<Task<C, W>> {
         #[cfg(test)]
         assert!(!BREAKS.load(core::sync::atomic::Ordering::Relaxed), "broken on purpose");
-        // A bin that the thread drew in last has its tiles in the thread's cache.
+        // If the thread was the last to draw in a bin, the bin's tiles are in its cache.
         let own = self.most_behind(|bin| bin.thread == thread);
         let any = self.most_behind(|_| true);
         let far = |bin: Option<usize>, lead: usize| bin.filter(|&k| self.is_behind(&self.bins[k], lead));
-        // Binning goes ahead of drawing, but not far: what was drawn hides what is binned.
+        // Binning runs ahead of drawing, but not far: what has been drawn hides what is binned.
         if let Some(bin) = far(own, LEAD).or(far(any, FOREIGN_BIN_LAG)) {
             return Some(self.claim_bin(bin, thread));
         }
         self.claim_batch(WORTHWHILE).or_else(|| own.or(any).map(|bin| self.claim_bin(bin, thread)))
     }
 
-    /// The first batch that no thread is binning, unless it is the last one and weighs less.
+    /// The first batch that no thread is binning, unless it is the last one and weighs less than `least`.
     fn claim_batch(&mut self, least: usize) -> Option<Task<C, W>> {
         let (end, most) = (self.in_flight().end, self.batch_calls());
         while self.open < end {
@@ -212,12 +213,12 @@ impl<C, W: Clone> Schedule<C, W> {
         None
     }
 
-    /// Is there something to draw in a bin that nobody draws in?
+    /// Is there something to draw in the bin, and is nobody drawing in it?
     fn is_due(&self, bin: &Bin) -> bool {
         !bin.busy && bin.next < self.ready
     }
 
-    /// Is there at least `lead` weight to draw in a bin?
+    /// Does a bin have at least `lead` weight left to draw?
     fn is_behind(&self, bin: &Bin, lead: usize) -> bool {
         let mut weight = 0;
         self.batches.range((bin.next - self.first) as usize..(self.ready - self.first) as usize).any(|batch| {
@@ -226,13 +227,13 @@ impl<C, W: Clone> Schedule<C, W> {
         })
     }
 
-    /// Of the bins that are due and wanted the one that is most behind.
+    /// Of the wanted bins that are due, the one that lags farthest behind.
     fn most_behind(&self, wanted: impl Fn(&Bin) -> bool) -> Option<usize> {
         let due = |&k: &usize| self.is_due(&self.bins[k]) && wanted(&self.bins[k]);
         (0..self.bins.len()).filter(due).min_by_key(|&k| self.bins[k].next)
     }
 
-    /// What there is to draw in a bin that is due.
+    /// The work to draw in a bin that is due.
     fn claim_bin(&mut self, bin: usize, thread: usize) -> Task<C, W> {
         self.bins[bin].thread = thread;
         let next = self.bins[bin].next;
@@ -255,13 +256,13 @@ impl<C, W: Clone> Schedule<C, W> {
         unbinned.any(|stage| matches!(stage, Stage::Open(..))) || self.bins.iter().any(|bin| self.is_due(bin))
     }
 
-    /// A batch was binned.
+    /// Reports that a batch was binned.
     pub fn binned(&mut self, batch: u64, work: W) {
         self.batches[(batch - self.first) as usize].stage = Stage::Ready(work);
         self.find_ready();
     }
 
-    /// A bin drew the next `count` batches. Hands back, by `done`, what all bins have drawn.
+    /// Reports that a bin drew the next `count` batches. Passes to `done` what all bins have drawn.
     pub fn drawn(&mut self, bin: usize, count: usize, mut done: impl FnMut(W)) {
         let from = (self.bins[bin].next - self.first) as usize;
         for batch in self.batches.range_mut(from..from + count) {
@@ -283,7 +284,7 @@ impl<C, W: Clone> Schedule<C, W> {
 mod tests {
     use super::*;
 
-    /// Plays random turns of submitters and threads; what a bin draws is compared with the order of submission.
+    /// Plays random turns of submitters and threads, and compares what each bin draws with the order of submission.
     fn play(seed: u64) {
         let mut random = fastrand::Rng::with_seed(seed);
         let (bins, max, threads) = (random.usize(1..6), random.usize(1..5), random.usize(1..5));
@@ -336,7 +337,8 @@ mod tests {
                     }
                 }
             }
-            // Nothing is left undone for want of somebody to wake: without tasks there is work, or all is done.
+            // No work is left behind for lack of a thread to wake: without tasks, either there is work or everything is
+            // done.
             assert!(!tasks.is_empty() || schedule.has_work() || schedule.is_done());
         }
         assert!(drawn.iter().all(|drawn| *drawn == submitted), "seed {seed}");
@@ -370,7 +372,7 @@ mod tests {
             }
             assert_eq!(schedule.submit(7, 1, true), Err(7));
             assert_eq!(schedule.in_flight(), 0..batches);
-            // One batch is binned: the arrays of its calls are free, though nothing is drawn.
+            // One batch is binned: the arrays of its calls are no longer read, though nothing is drawn.
             let Some(Task::Bin { batch, calls }) = schedule.claim(0) else { panic!("a full batch is worth binning") };
             schedule.binned(batch, calls);
             assert_eq!(

@@ -13,7 +13,7 @@ use core::fmt;
 #[non_exhaustive]
 pub struct ThreadpoolSettings {
     /// Worker threads of the pool. Fewer are started if there are fewer processors besides the caller's, but at least one: more
-    /// would only take turns with the others, and preempt one that holds a bin. 0: the work is done by the calls that flush or
+    /// would only compete with the others and could preempt one that holds a bin. 0: the work is done by calls that flush or
     /// submit, and by `work_once`.
     pub threads: u32,
     /// Columns of bins. There are at most four bins per thread, and none is smaller than 128 by 64 pixels; the screen is
@@ -21,7 +21,7 @@ pub struct ThreadpoolSettings {
     pub bins_w: u32,
     /// Rows of bins.
     pub bins_h: u32,
-    /// How many calls' arrays may still be read when a draw call returns: a program may rotate among one array more without a
+    /// How many calls' arrays may still be read when a draw call returns: a program may rotate among one more array without a
     /// flush. Small calls are gathered into batches of at most half as many, so a larger number makes them cheaper.
     pub max_jobs: u32,
     /// Processors available to the pool and its caller; 0: as many as the system reports.

@@ -1,4 +1,5 @@
-//! What threads wait on, in one place, so that a test can put a model in its stead (`tests/pool_interleavings.rs`).
+//! The primitives that threads wait on, in one place, so that a test can replace them with a model
+//! (`tests/pool_interleavings.rs`).
 
 use core::hint::spin_loop;
 use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
@@ -7,11 +8,11 @@ use std::time::{Duration, Instant};
 
 pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
-/// A thread takes longer to fall asleep and wake than most pieces of work take.
+/// Falling asleep and waking take longer than most pieces of work.
 const SPIN: Duration = Duration::from_micros(20);
 
-/// How often there was progress, for those who wait a moment before they sleep. It only says when to look again: what there is
-/// to see is under the lock.
+/// A progress counter for threads that spin briefly before they sleep. It only says when to check again; the state
+/// itself is under the lock.
 #[derive(Default)]
 pub(super) struct SpinWait(AtomicU64);
 
@@ -24,10 +25,10 @@ impl SpinWait {
         self.0.load(Relaxed)
     }
 
-    /// Waits until the count is another one, but only a moment.
+    /// Waits until the count changes, but only briefly.
     pub fn wait(&self, count: u64) {
         if cfg!(all(target_family = "wasm", target_os = "unknown")) {
-            // There is no clock: reading the time panics.
+            // There is no clock here: reading the time panics.
             return;
         }
         let begin = Instant::now();
@@ -35,14 +36,14 @@ impl SpinWait {
             for _ in 0..32 {
                 spin_loop();
             }
-            // On a processor that others need, too, those who work come first.
+            // If others need the processor too, working threads come first.
             yield_now();
         }
     }
 }
 
-/// The number of a thread that is not the pool's, so that it returns to the bins it drew in before. Worker threads count from
-/// 0.
+/// The number of a thread that does not belong to the pool, so that it returns to the bins in which it drew before.
+/// Worker threads count from 0.
 pub(super) fn external_thread() -> usize {
     static THREADS: AtomicUsize = AtomicUsize::new(0);
     thread_local!(static NUMBER: usize = usize::MAX - THREADS.fetch_add(1, Relaxed));

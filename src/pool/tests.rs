@@ -37,14 +37,15 @@ fn break_it(who: &str) {
             BREAKS.store(true, Relaxed);
             if who == "worker" {
                 pool.wake_threads();
-                // The worker aborts the process meanwhile. The flush below would do so, too, and must not stand in for it.
+                // The worker aborts the process meanwhile. The flush below would do so too, and must not mask a worker
+                // that does not.
                 std::thread::sleep(Duration::from_secs(60));
                 println!("the worker did not abort");
                 std::process::exit(0);
             }
         });
     }));
-    // Must not be reached: the lent slices would be read later.
+    // Must not be reached: the pool would still read the lent slices later.
     println!("came back, unwinding: {}", caught.is_err());
     std::process::exit(0);
 }

@@ -1,10 +1,11 @@
-//! The threads of a pool: take work, do it, sleep when there is none.
+//! The threads of a pool: they take work, do it, and sleep when there is none.
 //!
-//! While a worker thread is awake, submitted work never waits for a further call: a thread that leaves work behind ensures that
-//! a worker checks for it ([`Workers::leave_to_threads`]).
+//! While a worker thread is awake, submitted work never waits for a further call: a thread that leaves work behind
+//! ensures that a worker checks for it ([`Workers::leave_to_threads`]).
 //!
-//! Callers lend what they submit until a flush returns. A panic in the scheduler, which would be a bug, could make the flush
-//! return early or never, so it aborts the process (as in rayon); a panic in drawing is caught, and occluders are missing.
+//! Callers lend the data that they submit until a flush returns. A panic in the scheduler, which would be a bug, could
+//! make the flush return early or never, so it aborts the process (as in rayon); a panic while drawing is caught, and
+//! occluders are missing.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
@@ -30,14 +31,14 @@ fn abort_on_panic<R>(action: impl FnOnce() -> R) -> R {
     result
 }
 
-/// What threads share.
+/// State shared by the threads.
 pub(super) struct Workers {
     state: Mutex<State>,
     /// There may be work.
     work: Condvar,
-    /// Something was finished.
+    /// Something has been finished.
     progress: Condvar,
-    /// Counts what was finished.
+    /// Counts finished tasks.
     finished: SpinWait,
     /// Counts submissions that make a batch worth taking.
     news: SpinWait,
@@ -46,15 +47,15 @@ pub(super) struct Workers {
 struct State {
     schedule: Schedule<Call, Arc<Work>>,
     target: Option<Arc<Target>>,
-    /// Memory to be used again.
+    /// Memory for reuse.
     spare: Vec<BinnedTriangles>,
     /// Worker threads; how many of them wait for work; and how many of those have been notified but are not awake yet.
     threads: usize,
     idle: usize,
     woken: usize,
-    /// Where the last to wake one ran.
+    /// The processor on which the last waker ran.
     waker: Option<Processor>,
-    /// Threads that wait for progress.
+    /// Number of threads that wait for progress.
     waiting: usize,
     suspended: bool,
     stopped: bool,
@@ -94,11 +95,11 @@ impl Workers {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        // Nothing panics while it holds the lock; if it did, the state would still be sound.
+        // Nothing panics while holding the lock; even if it did, the state would still be consistent.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The way of a thread of the pool, until [`Self::stop`].
+    /// The main loop of a pool thread, until [`Self::stop`].
     pub fn work(&self, number: usize) {
         abort_on_panic(|| self.take_turns(number));
     }
@@ -106,7 +107,8 @@ impl Workers {
     fn take_turns(&self, number: usize) {
         let mut state = self.lock();
         state.threads += 1;
-        // Woken on the processor of who woke it the last time, and did not leave it.
+        // Whether the last wake-up was on the waker's processor without leaving it, and whether leaving is still
+        // allowed.
         let (mut in_turn, mut may_leave) = (false, true);
         // Whether it has already spun for more work since its last task or sleep.
         let mut waited = false;
@@ -121,7 +123,7 @@ impl Workers {
                     waited = false;
                     self.perform(state, task)
                 }
-                // Small calls arrive faster than a thread wakes, and a batch of several costs less.
+                // Small calls arrive faster than a thread wakes, and a batch of several is cheaper.
                 None if !waited && !state.suspended => {
                     waited = true;
                     let count = self.news.count();
@@ -135,7 +137,7 @@ impl Workers {
                     state.idle -= 1;
                     waited = false;
                     state.woken = state.woken.saturating_sub(1);
-                    // Taken, so that it does not count again where all are woken.
+                    // Taken, so that it is not counted again if all threads are woken.
                     let waker = state.waker.take();
                     let shared = Processor::current().filter(|&here| waker == Some(here));
                     if let Some(here) = shared
@@ -146,7 +148,7 @@ impl Workers {
                         may_leave = here.leave();
                         state = self.lock();
                     }
-                    // Once may be chance.
+                    // Once may be a coincidence.
                     in_turn = shared.is_some() && !in_turn;
                     state
                 }
@@ -154,8 +156,8 @@ impl Workers {
         }
     }
 
-    /// Wakes a thread if there is work and one that sleeps. Not twice: waking takes a system call, and the thread tens of
-    /// microseconds, in which others do what it was woken for.
+    /// Wakes a sleeping thread if there is work, but only one at a time: waking takes a system call, and it takes tens
+    /// of microseconds until the thread runs, during which others may do its work.
     fn wake(&self, state: &mut State) {
         if state.idle > state.woken && !state.suspended && state.schedule.has_work() {
             state.woken += 1;
@@ -171,9 +173,9 @@ impl Workers {
         }
     }
 
-    /// Does a task, outside of the lock.
+    /// Performs a task, outside the lock.
     fn perform<'a>(&'a self, mut state: MutexGuard<'a, State>, task: Task<Call, Arc<Work>>) -> MutexGuard<'a, State> {
-        // Each wakes the next, so that submitting wakes one at most.
+        // Each thread wakes the next, so that a submission wakes at most one.
         self.wake(&mut state);
         let target = state.target.clone();
         match task {
@@ -182,11 +184,12 @@ impl Workers {
                 drop(state);
                 let bin = || {
                     if let Some(target) = &target {
-                        // SAFETY: who submitted the calls vouches for them until the pool was flushed, which waits for this.
+                        // SAFETY: the submitter guarantees that the calls' data is valid until the pool has been
+                        // flushed, and a flush waits for this.
                         unsafe { target.bin(&calls, &mut binned) };
                     }
                 };
-                // A panic would be a bug of ours; then occluders are missing, which is safe, and nobody waits in vain.
+                // A panic would be a bug in this library. Missing occluders are safe, and no thread is left waiting.
                 if catch_unwind(AssertUnwindSafe(bin)).is_err() {
                     binned.clear();
                 }
@@ -222,7 +225,7 @@ impl Workers {
         state
     }
 
-    /// Does a task, or waits until somebody did one.
+    /// Performs a task, or waits until another thread has performed one.
     fn help<'a>(&'a self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
         if let Some(task) = state.schedule.claim(external_thread()) {
             return self.perform(state, task);
@@ -241,13 +244,14 @@ impl Workers {
         state
     }
 
-    /// Submits a call or part of one; `ends`: it completes the call. If there is no room, the caller works until there is.
+    /// Submits a call or a part of one; `ends`: it completes the call. If there is no room, the caller works until
+    /// there is.
     pub fn submit(&self, mut call: Call, ends: bool) {
         let weight = call.indices / 3;
         abort_on_panic(|| {
             let mut state = self.lock();
             loop {
-                // Under the lock, which orders clears and calls relative to each other.
+                // Under the lock, so that clears and calls are ordered relative to each other.
                 call.clears = state.target.as_ref().map_or(0, |target| target.clears());
                 let was_done = state.schedule.is_done();
                 match state.schedule.submit(call, weight, ends) {
@@ -268,12 +272,13 @@ impl Workers {
         });
     }
 
-    /// The same for work that needs no binning.
+    /// The same for work that does not need binning.
     pub fn submit_ready(&self, work: impl FnOnce() -> Work) {
         abort_on_panic(|| self.leave_to_threads(&mut self.push_ready(work)));
     }
 
-    /// Draws everything submitted, then this, before it returns. If nothing else is in flight, no thread is woken for it.
+    /// Draws everything submitted, then this, before it returns. If nothing else is in flight, no thread is woken for
+    /// it.
     pub fn do_now(&self, work: impl FnOnce() -> Work) {
         self.flush();
         abort_on_panic(|| self.finish(self.push_ready(work)));
@@ -285,13 +290,13 @@ impl Workers {
             state = self.help(state);
         }
         let was_done = state.schedule.is_done();
-        // Made under the lock: clears are numbered in the order in which they are done.
+        // Created under the lock, so that clears are numbered in the order in which they are performed.
         state.schedule.submit_ready(Arc::new(work()));
         state.begin(was_done);
         state
     }
 
-    /// Works until everything that is in flight is drawn.
+    /// Works until everything in flight is drawn.
     pub fn flush(&self) {
         abort_on_panic(|| {
             let mut state = self.lock();
@@ -309,7 +314,7 @@ impl Workers {
         self.leave_to_threads(&mut state);
     }
 
-    /// Does one task, if one is pending that no thread has taken.
+    /// Performs one task, if one is pending that no thread has taken.
     pub fn work_once(&self) -> bool {
         abort_on_panic(|| {
             let mut state = self.lock();
@@ -320,12 +325,12 @@ impl Workers {
         })
     }
 
-    /// Nothing is in flight.
+    /// Is nothing in flight?
     pub fn is_done(&self) -> bool {
         self.lock().schedule.is_done()
     }
 
-    /// Draws into another target from now on. Nothing is in flight, and the caller keeps others from submitting.
+    /// Switches to another target. Nothing may be in flight, and the caller must prevent submissions meanwhile.
     pub fn set_target(&self, target: Option<Arc<Target>>) {
         abort_on_panic(|| {
             let mut state = self.lock();

@@ -1,17 +1,17 @@
-//! A vector of triangles between setup and traversal.
+//! A vector of triangles between set-up and traversal.
 
 use core::mem::MaybeUninit;
 
 use crate::simd::MAX_LANES;
 
-/// A number per lane, not initialised: zeroing a batch in every call is measurable.
+/// A value per lane, uninitialised: zeroing a batch on every call would be measurable.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct Lanes<X: Copy>([MaybeUninit<X>; MAX_LANES]);
 
 impl<X: Copy> Lanes<X> {
     /// # Safety
-    /// Setup stored this field for this lane.
+    /// Set-up stored this field for this lane.
     #[inline(always)]
     pub unsafe fn get(&self, lane: usize) -> X {
         // SAFETY: the caller's contract.
@@ -34,34 +34,34 @@ impl<X: Copy> Lanes<X> {
     }
 }
 
-/// A vector of triangles after set-up: what the traversal reads, lane by lane.
+/// A vector of triangles after set-up, read lane by lane by the traversal.
 #[repr(C, align(64))]
 pub(crate) struct Batch {
-    /// Left edge: constant part of the event, and slope in pixels a row.
+    /// Left edge: the constant part of its event, and its slope in pixels per row.
     pub left: Lanes<f64>,
     pub left_slope: Lanes<f64>,
     pub right: Lanes<f64>,
     pub right_slope: Lanes<f64>,
-    /// The edge between the two lower corners bounds one side; on the other it is out of the way.
+    /// The edge between the two lower corners bounds one side; on the other it is placed where it bounds nothing.
     pub middle_left: Lanes<f64>,
     pub middle_right: Lanes<f64>,
     pub middle_slope: Lanes<f64>,
-    /// The edges once more, rounded: for bounds of what a row of tiles reaches.
+    /// The edges again, rounded to f32, to bound which tiles a tile row reaches.
     pub rounded: Rounded,
-    /// Depth bound of the first sub-tile of the first tile, and its change from sub-tile to sub-tile.
+    /// Depth bound of the first sub-tile of the first tile, and its change per sub-tile.
     pub z: Lanes<f32>,
     pub z_across: Lanes<f32>,
     pub z_down: Lanes<f32>,
-    /// The bound is limited to this.
+    /// The limit of the bound.
     pub z_limit: Lanes<f32>,
     /// The nearest vertex.
     pub nearest: Lanes<f32>,
-    /// Tiles of the bounding box, the last inside.
+    /// Tiles of the bounding box, inclusive.
     pub tile_x0: Lanes<u32>,
     pub tile_x1: Lanes<u32>,
     pub tile_y0: Lanes<u32>,
     pub tile_y1: Lanes<u32>,
-    /// Rows and columns of pixels of the bounding box, the last outside.
+    /// Rows and columns of pixels of the bounding box, end exclusive.
     pub row0: Lanes<f32>,
     pub row1: Lanes<f32>,
     pub column0: Lanes<u32>,
@@ -70,7 +70,7 @@ pub(crate) struct Batch {
     pub corners: [Lanes<f32>; 9],
 }
 
-/// Edges in f32.
+/// The edges in f32.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct Rounded {
@@ -90,10 +90,10 @@ impl Batch {
         unsafe { MaybeUninit::uninit().assume_init() }
     }
 
-    /// First and last column and row of tiles of a triangle's box.
+    /// First and last column and row of tiles of a triangle's bounds.
     #[inline(always)]
     pub fn tiles(&self, lane: usize) -> [u32; 4] {
-        // SAFETY: setup stores the tiles of every box.
+        // SAFETY: set-up stores the tiles of all bounds.
         unsafe { [self.tile_x0.get(lane), self.tile_x1.get(lane), self.tile_y0.get(lane), self.tile_y1.get(lane)] }
     }
 }

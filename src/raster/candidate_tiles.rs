@@ -1,8 +1,7 @@
-//! Candidate tiles: where they are in memory, and what the traversal needs of their tile row.
+//! Candidate tiles: where they are in memory, and what the traversal needs from their tile row.
 //!
-//! With vectors of sixteen lanes they are located a vector at a time: a look-up in the 32 numbers of the tile rows is one
-//! instruction there, and saves a fifth of the loop over tiles. With narrower vectors, whose look-ups are gathers, locating
-//! them one by one is 1 to 3% faster (AVX2, SSE4.1).
+//! With sixteen lanes they are located a vector at a time, because a look-up in the 32 values of the tile rows is a
+//! single instruction there. With narrower vectors such a look-up is a gather, and locating tiles one by one is faster.
 
 use core::mem::MaybeUninit;
 
@@ -11,42 +10,42 @@ use super::tile_rows::{LOW, MAX_TILES, PLACE_SHIFT, TILE_ROWS, TileRows, Words, 
 use crate::buffer::{BLOCK, SUB_TILES, TILE_WIDTH};
 use crate::simd::{MAX_LANES, Simd};
 
-/// With room for a vector after the last.
+/// Padded by one vector.
 type List<X> = [MaybeUninit<X>; MAX_TILES + MAX_LANES];
 
-/// Lists of the candidate tiles, not initialised.
+/// Lists of the candidate tiles, uninitialised.
 #[repr(C, align(64))]
 pub(super) struct CandidateTiles {
-    /// Number of the tile row, and column.
+    /// Tile row number and column.
     pub named: List<u32>,
-    /// Of those that were located: where their planes are, in bytes, plus one where they are covered completely.
+    /// For located tiles: the byte offset of their planes, plus one if they are fully covered.
     located: List<u32>,
     number: List<u32>,
     /// First column of pixels.
     left: List<u32>,
-    /// First column of sub-tiles, from the bounds' first tile.
+    /// First column of sub-tiles, relative to the first tile of the bounds.
     sub_column: List<f32>,
 }
 
 /// A candidate tile.
 pub(super) struct Tile<T: Simd> {
     pub tile_row: usize,
-    /// Where its planes are, in bytes.
+    /// Byte offset of its planes.
     pub planes: u32,
-    /// Is it covered completely?
+    /// Whether it is fully covered.
     pub whole: bool,
     pub number: u32,
     /// Its first column of pixels.
     pub left: u32,
-    /// Its columns of sub-tiles, from the bounds' first tile.
+    /// Its columns of sub-tiles, relative to the first tile of the bounds.
     pub sub_columns: T::F,
 }
 
 impl TileRows<'_> {
-    /// An address among the planes of the `k`th candidate tile, in bytes.
+    /// Address of the planes of the `k`th candidate tile, as a byte offset.
     #[inline(always)]
     pub fn about<T: Simd, S: TileOp<T>>(&self, k: usize) -> u32 {
-        // SAFETY: only those that `next` counted are asked for; those of vectors of sixteen lanes were located.
+        // SAFETY: callers only ask for tiles that `next` counted; with sixteen lanes those were located.
         unsafe {
             if T::LANES == MAX_LANES {
                 return self.lists.tiles.located.get_unchecked(k).assume_init();
@@ -59,7 +58,7 @@ impl TileRows<'_> {
     /// The column of the `k`th candidate tile.
     #[inline(always)]
     pub fn column(&self, k: usize) -> u32 {
-        // SAFETY: only those that `next` counted are asked for.
+        // SAFETY: callers only ask for tiles that `next` counted.
         unsafe { self.lists.tiles.named.get_unchecked(k).assume_init() & LOW }
     }
 
@@ -67,8 +66,8 @@ impl TileRows<'_> {
     #[inline(always)]
     pub fn tile<T: Simd, S: TileOp<T>>(&self, t: T, k: usize) -> Tile<T> {
         let lists = &*self.lists;
-        // SAFETY: only those that `next` counted are asked for, which are of tile rows that were bounded; those of vectors of sixteen
-        // lanes were located.
+        // SAFETY: callers only ask for tiles that `next` counted, whose tile rows were bounded; with sixteen lanes the
+        // tiles were located.
         unsafe {
             let (tile_row, x) = unpack(lists.tiles.named.get_unchecked(k).assume_init());
             let sub_columns = t.and(t.iota(), t.i(3));
@@ -98,14 +97,14 @@ impl TileRows<'_> {
         }
     }
 
-    /// Finds out where the candidate tiles are, a vector at a time.
+    /// Locates the candidate tiles, a vector at a time.
     #[inline(always)]
     pub(super) fn locate<T: Simd, S: TileOp<T>>(&mut self, t: T, tiles: usize) {
         let lists = &mut *self.lists;
         let mut k = 0;
         while k < tiles {
-            // SAFETY: the tiles up to `tiles` were listed, and a vector after them was written; of the lists of tile rows all 32 words
-            // were. There is room for a vector after the tiles.
+            // SAFETY: the tiles up to `tiles` were listed, and a padding vector was written after them; all 32 words of
+            // the tile row lists were written. The tile lists have room for a vector after the last tile.
             unsafe {
                 let word = t.load_i(lists.tiles.named.as_ptr().add(k).cast());
                 let (tile_row, x) =
@@ -126,17 +125,17 @@ impl TileRows<'_> {
     }
 }
 
-/// Of a tile's planes those of its lower half, if it is one of a block's.
+/// Shift that gives the byte offset of the lower tile's half of a block's plane.
 pub(super) const HALF_SHIFT: i32 = (SUB_TILES * size_of::<u32>()).trailing_zeros() as i32;
 const BLOCK_SHIFT: i32 = (BLOCK * size_of::<u32>()).trailing_zeros() as i32;
 
-/// How many bytes the planes of a block have.
+/// Size of a block's planes in bytes.
 #[inline(always)]
 const fn bytes_of<T: Simd, S: TileOp<T>>() -> u32 {
     (S::PLANES as u32) << BLOCK_SHIFT
 }
 
-/// How many those of so many blocks have.
+/// Size of the planes of this many blocks in bytes.
 #[inline(always)]
 pub(super) fn planes_before<T: Simd, S: TileOp<T>>(t: T, blocks: T::I) -> T::I {
     const { assert!(S::PLANES < 8) }

@@ -1,29 +1,29 @@
-//! Which triangles of a vector the hierarchy hides, before their edges are set up.
+//! Finds the triangles of a vector that the HiZ hides, before their edges are set up.
 //!
-//! Bounds of one or two columns and rows of tiles are compared with `z_min` of their four corners' tiles, which are all their
-//! tiles; larger ones with that of the coarse cells, in the same way and by the same gathers. Without the coarse level half of
-//! a castle's triangles that got edges had no candidate tile.
+//! Bounds of up to two by two tiles are compared with `z_min` at their four corner tiles, which are all the tiles they
+//! have; larger bounds are compared with the coarse cells in the same way, by the same gathers. Without the coarse
+//! level, many large hidden triangles would have their edges set up for nothing.
 
 use crate::buffer::hiz::{COARSE_COLUMN_SHIFT, COARSE_ROW_SHIFT, COARSE_TILES_W};
 use crate::buffer::{Buffer, TileRect};
 use crate::geometry::{Coverage, ScreenBounds};
 use crate::simd::Simd;
 
-/// What of the hierarchy may be read.
+/// The part of the HiZ that may be read.
 #[derive(Clone, Copy)]
 pub(crate) struct HizScope {
     /// These tiles.
     pub clip: TileRect,
-    /// Their coarse cells, too: they are kept up to date. How up to date depends on the instruction set, which changes nothing
-    /// in the buffer; but a query's counts would tell, so that queries leave them out.
+    /// Also their coarse cells, which are kept up to date. How recent they are depends on the instruction set, which
+    /// does not change the buffer but would change a query's counts, so queries do not read them.
     pub coarse: bool,
 }
 
-/// Triangles that are hidden inside the scope, or have nothing there.
+/// Triangles that are hidden within the scope, or have no pixel there.
 ///
 /// # Safety
-/// Nobody else writes to the scope's tiles and cells, unless `RACING`: then others may draw there, by stores of whole words.
-/// What is read may be old, which is safe: between clears, `z_min` only rises.
+/// Nobody else writes to the scope's tiles and cells, unless `RACING`: then others may draw there, storing whole words.
+/// Stale values are safe: between clears, `z_min` only rises.
 #[inline(always)]
 pub(crate) unsafe fn hidden<S: Simd, C: Coverage, const RACING: bool>(
     s: S,
@@ -36,13 +36,13 @@ pub(crate) unsafe fn hidden<S: Simd, C: Coverage, const RACING: bool>(
     let [mut x0, mut x1, mut y0, mut y1] = [bounds.tile_x0, bounds.tile_x1, bounds.tile_y0, bounds.tile_y1];
     if clip != buffer.all_tiles() {
         if clip.x0 >= clip.x1 || clip.y0 >= clip.y1 {
-            // No tile could stand in for the lanes that need none.
+            // There is no tile for the inactive lanes to read.
             return bounds.inside;
         }
         (x0, x1) = (s.max_i(x0, s.i(clip.x0 as i32)), s.min_i(x1, s.i(clip.x1 as i32 - 1)));
         (y0, y1) = (s.max_i(y0, s.i(clip.y0 as i32)), s.min_i(y1, s.i(clip.y1 as i32 - 1)));
         inside = s.and_not_m(s.or_m(s.gt_i(x0, x1), s.gt_i(y0, y1)), inside);
-        // What stands side by side is read in pairs, and beside the rectangle others may be writing.
+        // Neighbours are read in pairs, and next to the rectangle other threads may be writing.
         let width = clip.x1 - clip.x0;
         if width < 2 {
             return s.and_not_m(inside, bounds.inside);
@@ -70,12 +70,13 @@ pub(crate) unsafe fn hidden<S: Simd, C: Coverage, const RACING: bool>(
     let (top, bottom) = (row(top), row(bottom));
     let any = s.i((clip.y0 * buffer.tiles_w() + clip.x0) as i32);
     let at = |row: S::I, x: S::I| s.select_i(few, s.add_i(row, x), any);
-    // The two columns that are read begin with the bounds' first where these have two, else with the one to its left, or on the
-    // left edge with itself.
+    // The pair of columns begins with the first column of the bounds if they have two, else with the one to its left,
+    // or at the left edge with the column itself.
     let pair = s.max_i(s.sub_i(right, s.i(1)), edge);
-    // SAFETY: bounds that hold a pixel name tiles or cells of the rectangle, the other lanes its first tile. A rectangle beside
-    // which another thread may be writing is at least two wide, in cells, too, if they are read; in the whole buffer the
-    // second of a pair may be the next row's, and after the last tile and the last cell there is room.
+    // SAFETY: lanes whose bounds hold a pixel index tiles or cells of the rectangle, the other lanes its first tile. A
+    // rectangle next to which another thread may be writing is at least two tiles wide, and two cells if cells are
+    // read. In the whole buffer the second of a pair may belong to the next row, and there is padding after the last
+    // tile and the last cell.
     let ([top0, top1], [bottom0, bottom1]) =
         unsafe { (pairs::<S, RACING>(s, buffer, at(top, pair)), pairs::<S, RACING>(s, buffer, at(bottom, pair))) };
     let (first, second) = (s.min(top0, bottom0), s.min(top1, bottom1));
@@ -85,10 +86,10 @@ pub(crate) unsafe fn hidden<S: Simd, C: Coverage, const RACING: bool>(
     s.or_m(s.and_not_m(inside, bounds.inside), s.and_m(few, hidden))
 }
 
-/// `z_min` and that of the next tile or cell.
+/// `z_min` at this index and at the next.
 ///
 /// # Safety
-/// Both can be read; nobody writes them, unless `RACING`: then as words.
+/// Both can be read; nobody writes them, unless `RACING`: then only whole words.
 #[inline(always)]
 unsafe fn pairs<S: Simd, const RACING: bool>(s: S, buffer: &Buffer, index: S::I) -> [S::F; 2] {
     let z_min = buffer.z_min();

@@ -1,4 +1,4 @@
-//! Rasterising vectors of triangles: set-up, the rows of tiles that they reach, and an operation in each tile.
+//! Rasterises vectors of triangles: set-up, the tile rows that they reach, and an operation in each tile.
 
 pub(crate) mod batch;
 mod candidate_tiles;
@@ -18,7 +18,7 @@ pub(crate) use tile_op::TileOp;
 pub(crate) use tile_rows::MAX_TILES;
 pub(crate) use traverse::traverse;
 
-/// The positions of the bits of a mask.
+/// The positions of the set bits of a mask.
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     core::iter::from_fn(move || {
         (mask != 0).then(|| {

@@ -1,14 +1,14 @@
-//! The triangles that survive culling and clipping, in order, until they fill vectors.
+//! Queues the triangles that survive culling and clipping, in order, until they fill vectors.
 
 use core::mem::MaybeUninit;
 
 use crate::geometry::Corner;
 use crate::simd::{MAX_LANES, Simd};
 
-/// Triangles that there is room for.
+/// Capacity in triangles.
 pub(crate) const CAPACITY: usize = 256;
 
-/// Corner by corner, clockwise in rows that run down: x, y, 1/w.
+/// Corner by corner (clockwise with y down): x, y, 1/w.
 #[repr(C, align(64))]
 pub(crate) struct TriangleQueue {
     lanes: [[MaybeUninit<f32>; CAPACITY + MAX_LANES]; 9],
@@ -21,10 +21,10 @@ impl TriangleQueue {
         MaybeUninit::uninit()
     }
 
-    /// An empty queue in this memory.
+    /// Makes an empty queue in this memory.
     #[inline(always)]
     pub fn of(memory: &mut MaybeUninit<Self>) -> &mut Self {
-        // SAFETY: the length is written here, all else is arrays of `MaybeUninit`.
+        // SAFETY: the length is written here; everything else is arrays of `MaybeUninit`.
         unsafe {
             (&raw mut (*memory.as_mut_ptr()).len).write(0);
             memory.assume_init_mut()
@@ -67,7 +67,7 @@ impl TriangleQueue {
         self.len += n;
     }
 
-    /// The vector of triangles from `first` on; what comes after the last is all zeros.
+    /// The vector of triangles starting at `first`; lanes after the last triangle are zero.
     #[inline(always)]
     pub fn vector<S: Simd>(&mut self, s: S, first: usize) -> [Corner<S>; 3] {
         assert!(first < self.len && self.len <= CAPACITY);
@@ -77,12 +77,12 @@ impl TriangleQueue {
                 unsafe { s.store_f(lanes.as_mut_ptr().add(self.len).cast(), s.f(0.0)) };
             }
         }
-        // SAFETY: there is room for a vector after the last triangle, and what comes there was just written.
+        // SAFETY: there is room for a vector after the last triangle, and it was just written.
         let load = |k: usize| unsafe { s.load_f(self.lanes[k].as_ptr().add(first).cast()) };
         [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]]
     }
 
-    /// Removes the first `n`, after which less than a vector is left.
+    /// Removes the first `n` triangles, which leaves less than a vector.
     #[inline(always)]
     pub fn remove<S: Simd>(&mut self, s: S, n: usize) {
         assert!(n <= self.len && self.len < n + S::LANES);
@@ -91,7 +91,7 @@ impl TriangleQueue {
             return;
         }
         for lanes in &mut self.lanes {
-            // SAFETY: there is room for a vector after the last triangle; what comes there is written first.
+            // SAFETY: there is room for a vector after the last triangle, and it is written first.
             unsafe {
                 s.store_f(lanes.as_mut_ptr().add(self.len).cast(), s.f(0.0));
                 s.store_f(lanes.as_mut_ptr().cast(), s.load_f(lanes.as_ptr().add(n).cast()));

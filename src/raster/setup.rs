@@ -1,32 +1,33 @@
 //! Edges and depth plane of a vector of triangles.
 //!
-//! **Edges.** With the topmost corner first and the corners clockwise, row `r` of pixels is covered from the larger
-//! of its left events to the smaller of its right events; the event of an edge is the first pixel whose
-//! centre is on or right of it, for both sides, which is the top-left rule. It is the floor of
-//! `x + slope * r` in f64. The exact value there has a denominator of `256 * |dy|`; a bias of
-//! `1 - 1 / (512 * |dy|)` turns the ceiling into a floor with a tolerance of half a denominator either way.
-//! With coordinates up to 2^23 (32,768 pixels) and 2^14 rows, the roundings sum to less than a third of the tolerance,
-//! so the event is exact, and a fused multiply-add, which leaves roundings out, comes to the same. Wider triangles go
-//! through `wide_edges.rs`, where the constant part is rounded once. A horizontal edge bounds nothing: the range of rows, which
-//! is exact by itself, does.
+//! **Edges.** With the topmost corner first and the corners clockwise, row `r` of pixels is covered from the largest of
+//! its left events to the smallest of its right events. The event of an edge is the first pixel whose centre is on or
+//! to the right of it, for both sides; that is the top-left rule. It is the floor of `x + slope * r` in f64. The exact
+//! value has a denominator of `256 * |dy|`; a bias of `1 - 1 / (512 * |dy|)` turns the ceiling into a floor with a
+//! tolerance of half a denominator either way. With coordinates up to 2^23 (32,768 pixels) and 2^14 rows, the rounding
+//! errors sum to less than a third of the tolerance, so the event is exact, and a fused multiply-add, which rounds less
+//! often, gives the same result. Wider triangles go through `wide_edges.rs`, where the constant part is rounded once. A
+//! horizontal edge bounds nothing; the range of rows, which is exact, does.
 //!
 //! **Depth.** 1/w is a plane on the screen. For each sub-tile, exact coverage needs a bound that is not nearer than the
-//! triangle anywhere in the sub-tile, conservative coverage one that is not farther: the plane at the
-//! farthest (nearest) corner, less (more) a margin for rounding, limited to the farthest (nearest) vertex.
-//! The slopes and the value at the anchor, the corner of the box's first tile, are computed in f64 from exact differences and
-//! rounded once. In f32 what cancels there took a hundredth and more off the depths of floors and walls that reach behind the
-//! eye, whose vertices on the near plane are far away and far nearer than what is on the screen.
+//! triangle anywhere in the sub-tile; conservative coverage needs one that is not farther. The bound is the plane at
+//! the farthest (nearest) corner, less (plus) a margin for rounding, limited to the farthest (nearest) vertex. The
+//! slopes and the value at the anchor, which is the corner of the bounds' first tile, are computed in f64 from exact
+//! differences and rounded once. In f32, cancellation would cost a percent or more of the depth of floors and walls
+//! that reach behind the eye, because their vertices on the near plane are far away and much nearer than what is on the
+//! screen.
 //!
-//! Let `u = 2^-24`, `Z` the nearest vertex, and `s` the largest coordinate and a tile's width, so that no two of the points
-//! here are farther apart than `2 s`. The terms of the value at the anchor sum to at most `Z + 16 Z s^2 / area`, which is
-//! below `24 Z s^2 / area`. The quotient comes from f32 by one step of Newton's iteration, off by `2^-46`, and the roundings
-//! in f64 are far smaller: together less than `2^-40 Z s^2 / area`. Beyond 2^25 the area is not exact, but off by at
-//! most 2, which adds less than `4 / area` of those terms. For a computed area of 3 and a true one of 1 the terms themselves
-//! are off by a factor of 3, and it holds all the same: the real rise of a plane whose depths lie in `[0, Z]` is at most
-//! `8 Z s^2 / area`, and what is computed differs from it by no more than the error's share of that. What follows is of the screen's size, at most
-//! `a = |anchor| + |slope across| * box's width + |slope down| * box's height`: rounding the three, the corner, the
-//! margin and the walk to the sub-tile sum to at most `10 u a`, a vertex's depth adds one. The margin is `16 u a` and what
-//! was said of f64. On slivers it is large, and the clamp decides.
+//! Let `u = 2^-24`, `Z` the nearest vertex, and `s` the largest coordinate plus a tile's width, so that no two of the
+//! points here are farther apart than `2 s`. The terms of the value at the anchor sum to at most `Z + 16 Z s^2 / area`,
+//! which is below `24 Z s^2 / area`. The quotient comes from f32 by one Newton iteration and has an error of `2^-46`,
+//! and the roundings in f64 are far smaller: together less than `2^-40 Z s^2 / area`. Beyond 2^25 the area is not
+//! exact, but its error is at most 2, which adds less than `4 / area` of those terms. For a computed area of 3 and a
+//! true one of 1 the terms themselves are off by a factor of 3, and the bound still holds: the real rise of a plane
+//! whose depths lie in `[0, Z]` is at most `8 Z s^2 / area`, and the computed value differs from it by no more than the
+//! error's share of that. The remaining errors scale with the screen, with at most `a = |anchor| + |slope across| *
+//! width of the bounds + |slope down| * height of the bounds`: rounding the three values, the corner, the margin and
+//! the steps to the sub-tile sums to at most `10 u a`, and a vertex's depth adds one more `u a`. The margin is `16 u a`
+//! plus the f64 term above. On slivers it is large, and the clamp decides.
 
 use super::batch::Batch;
 use super::hiz_test::{self, HizScope};
@@ -40,14 +41,14 @@ use crate::simd::Simd;
 const INEXACT: f32 = (1 << 25) as f32;
 /// 16 roundings of f32.
 const MARGIN: f32 = 16.0 / (1 << 24) as f32;
-/// What is off in f64: see above.
+/// Error of the f64 computation, see above.
 const FINE_MARGIN: f32 = 1.0 / (1_u64 << 40) as f32;
-/// What set-up found, a bit per lane.
+/// The result of set-up, a bit per lane.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Alive {
-    /// Triangles that face the eye and whose bounds hold a pixel; the others are nothing.
+    /// Front-facing triangles whose bounds hold a pixel; all others are ignored.
     pub rasterized: u32,
-    /// Those of them that the hierarchy does not hide.
+    /// Those of them that the HiZ does not hide.
     pub lanes: u32,
 }
 
@@ -61,7 +62,7 @@ pub(crate) struct Setup<'a, S> {
     pub scope: HizScope,
 }
 
-/// A vector of triangles with the topmost corner first and the corners clockwise in rows that run down.
+/// A vector of triangles with the topmost corner first and the corners clockwise with y down.
 struct Oriented<S: Simd> {
     corners: [Corner<S>; 3],
     /// Twice the area; exact for coordinates up to 2^25.
@@ -86,7 +87,8 @@ impl<S: Simd> Oriented<S> {
         Self { corners: [v0, v1, v2], area, deltas }
     }
 
-    /// The lanes that count; stores the corners where they or anything later needs them, and the tiles of the bounds.
+    /// Returns the lanes that count. Stores the corners wherever these lanes or later steps need them, and the tiles of
+    /// the bounds.
     #[inline(always)]
     fn facing<C: Coverage, const ALWAYS_STORE: bool>(
         &self,
@@ -106,7 +108,7 @@ impl<S: Simd> Oriented<S> {
         }
         let mut lanes = s.mask_bits(alive);
         if wide != 0 {
-            // In f64 the sign of the area of so wide a triangle may be off.
+            // For a triangle this wide, the sign of the area may be wrong in f64.
             lanes = wide_edges::correct_facing(batch, lanes, wide & s.mask_bits(inside));
         }
         // SAFETY: as above.
@@ -120,8 +122,8 @@ impl<S: Simd> Oriented<S> {
     }
 }
 
-/// Orients the triangles in `active` and stores their corners and the tiles of their bounds, but no edges: for lists. The others
-/// may be anything.
+/// Orients the triangles in `active` and stores their corners and the tiles of their bounds, but no edges: for lists.
+/// The other lanes may hold anything.
 #[inline(always)]
 pub(crate) fn orient<S: Simd, C: Coverage>(
     setup: Setup<'_, S>,
@@ -135,7 +137,7 @@ pub(crate) fn orient<S: Simd, C: Coverage>(
     Alive { rasterized: lanes, lanes }
 }
 
-/// Sets up the triangles in `active`; the others may be anything. `skip_hidden`: nothing has to be known of hidden triangles.
+/// Sets up the triangles in `active`; the other lanes may hold anything. `skip_hidden`: hidden triangles need no edges.
 #[inline(always)]
 pub(crate) fn set_up<S: Simd, C: Coverage>(
     setup: Setup<'_, S>,
@@ -146,7 +148,7 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
 ) -> Alive {
     let Setup { s, buffer, both_sides, scope } = setup;
     let bounds = ScreenBounds::new::<C>(s, buffer.size(), &corners);
-    // SAFETY: whoever draws has the scope's tiles to itself; of whoever queries, see `kernel::test`.
+    // SAFETY: a draw has exclusive access to the scope's tiles; for a query, see `kernel::test`.
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
     if skip_hidden && s.mask_bits(s.and_m(active, bounds.inside)) & !hidden == 0 {
         return Alive::default();
@@ -160,7 +162,7 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
     Alive { rasterized, lanes }
 }
 
-/// Edges and depth planes of a vector of triangles; those of the lanes in `wide` by integers.
+/// Edges and depth planes of a vector of triangles; the lanes in `wide` get theirs by integer arithmetic.
 #[inline(always)]
 fn edges_and_depth<S: Simd, C: Coverage>(
     s: S,
@@ -206,7 +208,7 @@ fn edges_and_depth<S: Simd, C: Coverage>(
     }
     let [_, right, right_slope] = C::edge(s, [x0, y0], [dx_r, dy_r]);
     let [left, _, left_slope] = C::edge(s, [x0, y0], [dx_l, dy_l]);
-    // A horizontal side bounds nothing.
+    // A horizontal edge bounds nothing.
     let right = s.add_d(right, where_d(s, s.eq(v0[1], v1[1]), UNBOUNDED));
     let left = s.add_d(left, where_d(s, s.eq(v0[1], v2[1]), -UNBOUNDED));
     let sides = Sides { left, left_slope, right, right_slope };
@@ -250,7 +252,7 @@ fn edges_and_depth<S: Simd, C: Coverage>(
     let off = s.mul(terms, s.add(inexact, s.f(FINE_MARGIN)));
     let rise = s.add(s.mul(s.abs(across), s.sub(end_x, first_x)), s.mul(s.abs(down), s.sub(end_y, first_y)));
     let margin = s.add(off, s.mul(s.add(s.abs(first), rise), s.f(MARGIN)));
-    // Per sub-tile of 8 by 4 pixels.
+    // Per 8x4 sub-tile.
     let (across_sub_tile, down_sub_tile) = (s.mul(across, s.f(2048.0)), s.mul(down, s.f(1024.0)));
     let plane = DepthPlane { first, across, down, across_sub_tile, down_sub_tile, margin };
     let [bound, across, down] = C::depth_bound(s, degenerate, &plane);
@@ -267,7 +269,7 @@ struct Deltas<S: Simd> {
     left: (S::D, S::D),
 }
 
-/// Twice the area, positive for clockwise corners in rows that run down; exact for coordinates up to 2^25.
+/// Twice the area, positive for clockwise corners with y down; exact for coordinates up to 2^25.
 #[inline(always)]
 fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (S::D, Deltas<S>) {
     let (x0, y0) = (s.to_d(v0[0]), s.to_d(v0[1]));
@@ -277,7 +279,7 @@ fn doubled_area<S: Simd>(s: S, v0: Corner<S>, v1: Corner<S>, v2: Corner<S>) -> (
     (area, Deltas { right, left })
 }
 
-/// Of three corners, `y` where the second comes first, `z` where the third does, else `x`.
+/// Selects by which corner comes first: `y` where it is the second, `z` where it is the third, else `x`.
 #[inline(always)]
 fn turn<S: Simd>(s: S, second: S::M, third: S::M, x: Corner<S>, y: Corner<S>, z: Corner<S>) -> Corner<S> {
     [
@@ -300,7 +302,7 @@ mod tests {
 
     type Triangle = [[f32; 3]; 3];
 
-    /// Sets up a vector of triangles and hands over, for each that counts, its number and its batch's lane.
+    /// Sets up a vector of triangles and passes the index and batch lane of each one that counts to the closure.
     struct SetUp<'a, F>(&'a Buffer, &'a [Triangle; MAX_LANES], F);
 
     struct Checked<'a, C, F>(SetUp<'a, F>, core::marker::PhantomData<C>);
@@ -346,7 +348,7 @@ mod tests {
         (bx - ax) * (y - ay) - (x - ax) * (by - ay)
     }
 
-    /// A row's events against the exact top-left rule at every pixel near them.
+    /// Compares a row's events with the exact top-left rule at every pixel near them.
     #[test]
     fn events_are_exact() {
         let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
@@ -374,7 +376,7 @@ mod tests {
                                 let covered = (0..3).all(|k| {
                                     let (a, b) = (t[k], t[(k + 1) % 3]);
                                     let side = cross(a, b, x, y);
-                                    // Clockwise in rows that run down: a top edge runs right, a left edge runs up.
+                                    // Clockwise with y down: a top edge runs right, a left edge runs up.
                                     let top_left = b[1] < a[1] || (b[1] == a[1] && b[0] > a[0]);
                                     side > 0 || (side == 0 && top_left)
                                 });
@@ -394,7 +396,7 @@ mod tests {
         }
     }
 
-    /// The depth bound at every corner of a few sub-tiles against the plane in f64.
+    /// Compares the depth bound at every corner of a few sub-tiles with the plane in f64.
     fn bounds_hold<C: Coverage>(size: i32, holds: impl Fn(f64, f64) -> bool) {
         let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
         for level in Level::all() {

@@ -1,4 +1,4 @@
-//! What the traversal does in a tile: an update, a comparison.
+//! The operations of the traversal in a tile: an update or a comparison.
 
 use crate::buffer::TilePlace;
 use crate::geometry::Coverage;
@@ -6,31 +6,31 @@ use crate::simd::Simd;
 
 /// An operation on tiles.
 pub(crate) trait TileOp<T: Simd> {
-    /// Planes of the buffer that it reads.
+    /// Number of the buffer's planes that it reads.
     const PLANES: usize;
-    /// Which pixels and depths it is given.
+    /// The kind of coverage and depth bound it needs.
     type Coverage: Coverage;
 
-    /// Tiles with this `z_min` in which something at `nearest` matters.
+    /// Tiles with this `z_min` in which something at `nearest` has an effect.
     #[inline(always)]
     fn is_candidate(t: T, z_min: T::F, nearest: T::F) -> T::M {
         Self::Coverage::visible(t, nearest, z_min)
     }
 
-    /// Processes the pixels `covered` at `depth` in a tile of a row and, with sixteen lanes, in the tile below. False: no more
-    /// tiles are needed.
+    /// Processes the pixels `covered` at `depth` in a tile of a row and, with sixteen lanes, in the tile below. Returns
+    /// false if no more tiles are needed.
     ///
     /// # Safety
-    /// It is a tile of the buffer, which the operation may use.
+    /// `at` is a tile of the buffer, and the operation may access it.
     unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, covered: T::I, depth: T::F) -> bool;
 
-    /// The same for all pixels of the tile or tiles.
+    /// As [`Self::tile`], with all pixels of the tile or tiles covered.
     ///
     /// # Safety
     /// As [`Self::tile`].
     unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool;
 
-    /// Comes after some tiles, at most [`MAX_TILES`](super::tile_rows::MAX_TILES).
+    /// Called after some tiles, at most [`MAX_TILES`](super::tile_rows::MAX_TILES).
     #[inline(always)]
     fn tiles_done(&mut self, _tiles: usize) {}
 }

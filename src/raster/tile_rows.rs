@@ -1,9 +1,9 @@
-//! The rows of tiles that triangles reach, and which of their tiles are candidates: those whose `z_min` does not hide the triangle.
+//! The tile rows that triangles reach, and their candidate tiles: those whose `z_min` does not hide the triangle.
 //!
-//! A vector of triangles becomes a list of tile rows, in order. A vector of tile rows at a time, the edges bound which tiles each
-//! reaches, and the candidates among these become one flat list. None of the loops has a branch that depends on the scene. The
-//! bounds are computed from the edges in f32 and widened by its rounding errors, so that they may include a tile too many but
-//! never miss one.
+//! A vector of triangles becomes a list of tile rows, in order. For a vector of tile rows at a time, the edges bound
+//! which tiles each one reaches, and the candidates among these form one flat list. No loop has a branch that depends
+//! on the scene. The bounds are computed from the edges in f32 and widened by the rounding error, so they may include a
+//! tile too many but never miss one.
 
 use core::mem::MaybeUninit;
 
@@ -13,16 +13,16 @@ use super::tile_op::TileOp;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
 
-/// Tile rows processed at a time, those of ten triangles or so. With sixteen at a time a frame takes 2% longer; more than 32
-/// bring nothing.
+/// Tile rows processed at a time, which is about ten triangles. Sixteen is measurably slower; more than 32 gains
+/// nothing.
 pub(super) const TILE_ROWS: usize = 32;
 /// Candidate tiles processed at a time.
 const TILES: usize = 192;
-/// With those of the last vector.
+/// Including the last vector's.
 pub(crate) const MAX_TILES: usize = TILES + MAX_LANES;
 /// Below every tile's `z_min`.
 const HIDDEN: f32 = -2.0;
-/// Eight roundings: of a constant, a slope, their product and sum, with room.
+/// Eight roundings: of a constant, a slope, their product and their sum, with slack.
 const WIDEN: f32 = 8.0 / (1 << 24) as f32;
 
 pub(super) const PLACE_SHIFT: i32 = 16;
@@ -31,39 +31,39 @@ pub(super) const LOW: u32 = (1 << PLACE_SHIFT) - 1;
 pub(super) type Words = [MaybeUninit<u32>; TILE_ROWS + MAX_LANES];
 type Floats = [MaybeUninit<f32>; TILE_ROWS + MAX_LANES];
 
-/// Rows of tiles that a vector takes at once: sixteen lanes are sixteen rows of pixels, which are two.
+/// Rows of tiles that one vector covers: sixteen lanes are sixteen rows of pixels, which is two rows of tiles.
 #[inline(always)]
 pub(super) const fn height<T: Simd>() -> u32 {
     (T::LANES / SUB_TILES) as u32
 }
 
-/// Memory for the lists, not initialised.
+/// Memory for the lists, uninitialised.
 #[repr(C, align(64))]
 pub(super) struct TileRowLists {
-    /// Triangle's lane and, of a vector's height, row of tiles.
+    /// Lane of the triangle and its tile row, in units of a vector's height.
     place: Words,
-    /// The tile row's number and its first tile's column.
+    /// The tile row's index and the column of its first tile.
     first: Words,
-    /// Number of tiles, which may be 0.
+    /// Number of tiles, possibly 0.
     count: Words,
-    /// The triangle's nearest depth where it reaches the row of tiles, else [`HIDDEN`]; with sixteen lanes, of the upper and of
-    /// the lower row.
+    /// The triangle's nearest depth if it reaches the row of tiles, else [`HIDDEN`]; with sixteen lanes, one for the
+    /// upper and one for the lower row.
     upper: Floats,
     lower: Floats,
-    /// Of the first row of tiles at column 0: where the planes are, in bytes, and the number of the tile.
+    /// Of the first row of tiles at column 0: the byte offset of the planes, and the tile index.
     pub(super) planes: Words,
     pub(super) index: Words,
-    /// First column and number of the tiles that are covered completely.
+    /// First column and number of the fully covered tiles.
     pub(super) inner_first: Words,
     pub(super) inner: Words,
-    /// Its first row of pixels, and the rows of sub-tiles from the bounds' first tile to it.
+    /// Its first row of pixels, and the number of rows of sub-tiles from the first tile of the bounds to it.
     top: Floats,
     sub_row: Words,
-    /// The depth bound's change from sub-tile to sub-tile, its limit, and sub-tiles left of the bounds' first tile.
+    /// The depth bound's change per sub-tile, its limit, and the number of sub-tiles left of the bounds' first tile.
     across: Floats,
     limit: Floats,
     pub(super) sub_column: Words,
-    /// Of each triangle: its lane and first row, and how many rows it has.
+    /// For each triangle: its lane and first row, and its number of rows.
     first_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     rows_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     /// Tile rows with a candidate tile.
@@ -71,13 +71,13 @@ pub(super) struct TileRowLists {
     pub(super) tiles: CandidateTiles,
 }
 
-/// The tile rows of some triangles, and how far they were processed.
+/// The tile rows of some triangles, and how far they have been processed.
 pub(super) struct TileRows<'a> {
     pub(super) lists: &'a mut TileRowLists,
-    /// Triangles whose tile rows are not listed yet, and the row at which the first continues.
+    /// Triangles whose tile rows are not listed yet, and the row at which the first of them continues.
     todo: u32,
     row: u32,
-    /// Tile rows listed, and the next one to process.
+    /// Number of tile rows listed, and the next one to process.
     listed: usize,
     next: usize,
 }
@@ -112,7 +112,7 @@ impl<'a> TileRows<'a> {
             t.store_i(lists.rows_of_triangle.as_mut_ptr().cast(), rows);
         }
         if T::LANES == MAX_LANES {
-            // Vectors of sixteen lanes look up in all 32, even where only one vector is bounded.
+            // With sixteen lanes all 32 words are looked up, even if only one vector was bounded.
             let TileRowLists { planes, index, inner_first, inner, sub_column, .. } = lists;
             for list in [planes, index, inner_first, inner, sub_column] {
                 // SAFETY: a list has room for three vectors.
@@ -122,35 +122,35 @@ impl<'a> TileRows<'a> {
         Self { lists, todo: triangles, row: 0, listed: 0, next: 0 }
     }
 
-    /// Lane of the triangle, and row of tiles, in rows of a vector's height.
+    /// Lane of the triangle, and tile row in units of a vector's height.
     #[inline(always)]
     pub fn place(&self, tile_row: usize) -> (usize, u32) {
-        // SAFETY: the tile rows up to `listed` were written, and only those are asked for.
+        // SAFETY: the tile rows up to `listed` were written, and callers ask for no others.
         let word = unsafe { self.lists.place.get_unchecked(tile_row).assume_init() };
         unpack(word)
     }
 
-    /// The number of the `k`th tile row that has a candidate.
+    /// The index of the `k`th tile row that has a candidate.
     #[inline(always)]
     pub fn with_candidates(&self, k: usize) -> usize {
-        // SAFETY: only those that `next` counted are asked for.
+        // SAFETY: callers only ask for rows that `next` counted.
         unsafe { self.lists.with_candidates.get_unchecked(k).assume_init() as usize }
     }
 
-    /// Its first row of pixels, and the rows of sub-tiles from the bounds' first tile to it.
+    /// Its first row of pixels, and the number of rows of sub-tiles from the first tile of the bounds to it.
     #[inline(always)]
     pub fn rows(&self, tile_row: usize) -> (f32, i32) {
-        // SAFETY: the tile rows up to `listed` were bounded, and only those are asked for.
+        // SAFETY: the tile rows up to `listed` were bounded, and callers ask for no others.
         unsafe {
             let sub_row = self.lists.sub_row.get_unchecked(tile_row).assume_init();
             (self.lists.top.get_unchecked(tile_row).assume_init(), sub_row as i32)
         }
     }
 
-    /// The depth bound's change from sub-tile to sub-tile, and its limit.
+    /// The depth bound's change per sub-tile, and its limit.
     #[inline(always)]
     pub fn slope(&self, tile_row: usize) -> (f32, f32) {
-        // SAFETY: the tile rows up to `listed` were bounded, and only those are asked for.
+        // SAFETY: the tile rows up to `listed` were bounded, and callers ask for no others.
         unsafe {
             (
                 self.lists.across.get_unchecked(tile_row).assume_init(),
@@ -159,7 +159,7 @@ impl<'a> TileRows<'a> {
         }
     }
 
-    /// Lists the next candidate tiles. `None`: there are no more tile rows.
+    /// Lists the next candidate tiles; `None` if there are no more tile rows.
     #[inline(always)]
     pub fn next<T: Simd, S: TileOp<T>>(
         &mut self,
@@ -194,7 +194,7 @@ impl<'a> TileRows<'a> {
         let mut place = 0;
         while self.todo != 0 && listed < TILE_ROWS {
             let lane = self.todo.trailing_zeros() as usize;
-            // SAFETY: `new` wrote what it found of every lane; there is room for a vector after `TILE_ROWS`.
+            // SAFETY: `new` wrote the values of every lane; there is room for a vector after `TILE_ROWS`.
             let rows = unsafe {
                 place = self.lists.first_of_triangle.get_unchecked(lane).assume_init() + self.row;
                 let places = t.add_i(t.i(place as i32), t.iota());
@@ -209,23 +209,23 @@ impl<'a> TileRows<'a> {
                 self.todo &= self.todo - 1;
             }
         }
-        // Whole vectors are bounded: the last is repeated.
+        // Only whole vectors are bounded, so the last entry is repeated.
         // SAFETY: there is room for a vector after `TILE_ROWS`.
         unsafe { t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), t.i(place as i32)) };
         (self.listed, self.next) = (listed, 0);
     }
 
-    /// Bounds the tiles of a vector of tile rows from number `k` on.
+    /// Bounds the tiles of a vector of tile rows, starting at index `k`.
     ///
     /// # Safety
-    /// `k` is below `TILE_ROWS`, and as many places were written.
+    /// `k` is below `TILE_ROWS`, and a vector of places was written from there.
     #[inline(always)]
     unsafe fn bound<T: Simd, S: TileOp<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect, batch: &Batch, k: usize) {
         // SAFETY: the caller's contract.
         let place = unsafe { t.load_i(self.lists.place.as_ptr().add(k).cast()) };
         let lane = t.sra::<PLACE_SHIFT>(place);
         let row = t.and(place, t.i(LOW as i32));
-        // SAFETY: lanes of a batch, whose arrays hold any vector.
+        // SAFETY: lanes of a batch, whose arrays are as long as the widest vector.
         let of = |field: &Lanes<f32>| unsafe { t.lookup(field.as_ptr(), lane) };
         // SAFETY: as above.
         let of_i = |field: &Lanes<u32>| unsafe { t.bits(t.lookup(field.as_ptr().cast(), lane)) };
@@ -243,7 +243,7 @@ impl<'a> TileRows<'a> {
         let slope = of(&edges.middle_slope);
         let middle_left = span.bounds(of(&edges.middle_left), slope);
         let middle_right = span.bounds(of(&edges.middle_right), slope);
-        // All rows lie between these events: tiles between them are covered wholly.
+        // All rows of the span lie between these events, so tiles between them are fully covered.
         let inner_left = t.min(t.max(t.max(left[1], middle_left[1]), column0), column1);
         let inner_right = t.max(t.min(t.min(right[0], middle_right[0]), column1), column0);
         let whole = t.and_m(t.le(of(&batch.row0), top), t.le(bottom, of(&batch.row1)));
@@ -251,7 +251,7 @@ impl<'a> TileRows<'a> {
         let inner_end = t.sra::<5>(t.trunc(inner_right));
         let inner = t.select_i(whole, t.max_i(t.sub_i(inner_end, inner_first), t.i(0)), t.i(0));
 
-        // No row reaches beyond these.
+        // No row extends past these.
         let left = t.min(t.max(t.max(left[0], middle_left[0]), column0), column1);
         let right = t.max(t.min(t.min(right[1], middle_right[1]), column1), column0);
         // Events are rounded down.
@@ -275,7 +275,7 @@ impl<'a> TileRows<'a> {
         }
         store!(i first, t.or(number, first));
         store!(i count, count);
-        // Exact: there are at most 2^20 tiles.
+        // Exact, because there are at most 2^20 tiles.
         let in_rows = t.round(t.mul(t.to_f(row), t.f(buffer.tiles_w() as f32)));
         if height::<T>() == 1 {
             let block = t.round(t.mul(t.to_f(t.sra::<1>(row)), t.f(buffer.tiles_w() as f32)));
@@ -307,7 +307,7 @@ impl<'a> TileRows<'a> {
         }
     }
 
-    /// Lists candidate tiles, as many as there is room for.
+    /// Lists as many candidate tiles as there is room for.
     #[inline(always)]
     fn find_candidates<T: Simd, S: TileOp<T>>(&mut self, t: T, buffer: &Buffer, clip: TileRect) -> Candidates {
         if clip == buffer.all_tiles() {
@@ -317,18 +317,18 @@ impl<'a> TileRows<'a> {
         }
     }
 
-    /// The same where the clip is the `WHOLE` buffer, or not: then another thread may be writing beside it.
+    /// `WHOLE`: the clip is the whole buffer; otherwise another thread may be writing next to it.
     #[inline(always)]
     fn find_candidates_in<T: Simd, S: TileOp<T>, const WHOLE: bool>(&mut self, t: T, buffer: &Buffer) -> Candidates {
         let (mut tile_rows, mut tiles) = (0, 0);
-        // Candidates of a wide tile row, which takes several rounds and is listed after the last.
+        // Candidates found so far in a wide tile row, which takes several rounds and is listed after the last one.
         let mut before = 0;
         while self.next < self.listed && tiles < TILES {
             let k = self.next;
             let lists = &mut *self.lists;
-            // SAFETY: the tile rows listed were bounded; the loop checks the room for the lists, and after the last
-            // there is room for a vector. `z_min` is read of tiles of the buffer, where there is room for a
-            // vector after the last, and where another thread may be writing, no others.
+            // SAFETY: the listed tile rows were bounded. The loop checks that the lists have room, and they are padded
+            // by a vector. `z_min` is only read for tiles of the buffer, with room for a vector after the last one;
+            // where another thread may be writing, only tiles of the clip are read.
             unsafe {
                 let first = lists.first.get_unchecked(k).assume_init();
                 let count = lists.count.get_unchecked(k).assume_init();
@@ -352,7 +352,7 @@ impl<'a> TileRows<'a> {
                     before = 0;
                     self.next += 1;
                 } else {
-                    // The rest comes in another round.
+                    // The rest follows in another round.
                     before += n;
                     lists.first.get_unchecked_mut(k).write(first + T::LANES as u32);
                     lists.count.get_unchecked_mut(k).write(count - T::LANES as u32);
@@ -361,21 +361,21 @@ impl<'a> TileRows<'a> {
         }
         tile_rows += usize::from(before != 0);
         if T::LANES == MAX_LANES {
-            // Whole vectors are located.
-            // SAFETY: there is room for a vector after the last.
+            // Only whole vectors are located.
+            // SAFETY: there is room for a vector after the last tile.
             unsafe { t.store_i(self.lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.i(0)) };
         }
         Candidates { tile_rows, tiles }
     }
 }
 
-/// The two numbers of a word of a list.
+/// The two halves of a list's word.
 #[inline(always)]
 pub(super) fn unpack(word: u32) -> (usize, u32) {
     ((word >> PLACE_SHIFT) as usize, word & LOW)
 }
 
-/// A vector of spans of rows of pixels, from the first to the last.
+/// A vector of spans of pixel rows, first and last inclusive.
 struct Span<T: Simd> {
     t: T,
     y0: T::F,
@@ -383,7 +383,7 @@ struct Span<T: Simd> {
 }
 
 impl<T: Simd> Span<T> {
-    /// The least and the largest that the event of an edge can be in the span.
+    /// The least and the largest event that an edge can have in the span.
     #[inline(always)]
     fn bounds(&self, constant: T::F, slope: T::F) -> [T::F; 2] {
         let t = self.t;

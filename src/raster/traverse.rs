@@ -1,9 +1,10 @@
-//! The tiles of triangles: coverage and depth bounds, handed to a tile operation.
+//! Visits the tiles of triangles: computes their coverage and depth bounds and passes them to a tile operation.
 //!
-//! The tile rows of a vector of triangles (see `tile_rows.rs`) that have candidate tiles get their events and the depths of
-//! their sub-tiles; then the candidates are processed one after the other. Workspace instead of nested loops over triangles, rows and
-//! tiles, because the processor mispredicts where each loop ends. The price is that a tile's `z_min` is read before the
-//! triangles of the same vector are drawn; what that lets through changes nothing in the buffer.
+//! For the tile rows of a vector of triangles (see `tile_rows.rs`) that have candidate tiles, the events and the depths
+//! of the sub-tiles are computed; then the candidates are processed one after the other. Flat lists replace nested
+//! loops over triangles, rows and tiles, because the processor mispredicts the end of every short loop. In return, a
+//! tile's `z_min` is read before the triangles of the same vector are drawn; the additional candidates do not change
+//! the buffer.
 //!
 //! Coverage comes from events (see `setup.rs`): the rows of a tile are lanes of 32 pixels each, two shifts per
 //! lane; transposing bytes then turns rows into sub-tiles, lanes of 8x4 pixels (HPG 2016, section 3.1).
@@ -18,27 +19,27 @@ use crate::buffer::{BLOCK, Buffer, TilePlace, TileRect};
 use crate::geometry::Coverage;
 use crate::simd::{MAX_LANES, Simd};
 
-/// The rows of pixels of a tile row.
+/// The pixel rows of a tile row.
 #[repr(C, align(64))]
 struct Rows {
-    /// For each row of pixels the first pixel inside and the first beyond, from the screen's left side.
+    /// For each pixel row the first pixel inside and the first one past the end, counted from the left of the screen.
     left: [u32; MAX_LANES],
     right: [u32; MAX_LANES],
-    /// Depth bound of each sub-tile of the bounds' first tile.
+    /// Depth bound of each sub-tile of the first tile of the bounds.
     z: [f32; MAX_LANES],
 }
 
 /// How many tiles ahead memory is prefetched.
 const AHEAD: usize = 6;
 
-/// Memory for the lists, not initialised. The order matters: the other way round, scenes were 1 to 2% slower.
+/// Memory for the lists, uninitialised. The order of the fields matters: the reverse order is measurably slower.
 #[repr(C)]
 pub(crate) struct Workspace {
     rows: [MaybeUninit<Rows>; tile_rows::TILE_ROWS],
     tile_rows: MaybeUninit<tile_rows::TileRowLists>,
 }
 
-/// What a traversal works on: triangles after set-up, and the tiles that they may reach.
+/// The input of a traversal: triangles after set-up, and the tiles that they may reach.
 pub(crate) struct Input<'a> {
     pub buffer: &'a Buffer,
     /// Only tiles inside it are visited.
@@ -48,20 +49,21 @@ pub(crate) struct Input<'a> {
     pub lists: &'a mut MaybeUninit<Workspace>,
 }
 
-/// Applies an operation to the tiles of the triangles in `alive.lanes`, in order. Returns the lane at which it needed no more.
+/// Applies an operation to the tiles of the triangles in `alive.lanes`, in order. Returns the lane at which it stopped
+/// early.
 #[inline(always)]
 pub(crate) fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O) -> Option<u32> {
     let Input { buffer, clip, batch, alive, lists } = input;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Workspace { tile_rows, rows } = unsafe { lists.assume_init_mut() };
     let mut tile_rows = TileRows::new(t, tile_rows, clip, batch, alive.lanes);
-    // By value: to the compiler, a store into a tile may change what is behind a reference.
+    // By value: the compiler must assume that a store into a tile changes anything behind a reference.
     let (first_planes, first_z_min, pitch) = (buffer.planes(), buffer.z_min(), buffer.tiles_w() as usize);
     while let Some(found) = tile_rows.next::<T, O>(t, buffer, clip, batch) {
         for k in 0..found.tile_rows {
             let tile_row = tile_rows.with_candidates(k);
             let (lane, _) = tile_rows.place(tile_row);
-            // SAFETY: tile rows are fewer than there is room for; set-up stored the lane.
+            // SAFETY: there are fewer tile rows than there is room for; set-up stored the lane.
             unsafe {
                 let rows = rows.get_unchecked_mut(tile_row).as_mut_ptr();
                 write_rows::<T, O::Coverage>(t, batch, lane, tile_rows.rows(tile_row), buffer.width(), rows);
@@ -75,7 +77,7 @@ pub(crate) fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O
                 }
             }
             let tile = tile_rows.tile::<T, O>(t, k);
-            // SAFETY: tile rows with candidates were written above; vectors of as many words as there are lanes.
+            // SAFETY: tile rows with candidates were written above; each array holds a vector.
             let (left, right, z) = unsafe {
                 let rows = rows.get_unchecked(tile.tile_row).as_ptr();
                 let (left, right) = (&raw const (*rows).left, &raw const (*rows).right);
@@ -142,7 +144,7 @@ unsafe fn write_rows<T: Simd, C: Coverage>(
     let right = event(&batch.right, &batch.right_slope);
     let left = t.d_to_i(t.max_d(left, event(&batch.middle_left, &batch.middle_slope)));
     let right = t.d_to_i(t.min_d(right, event(&batch.middle_right, &batch.middle_slope)));
-    // In rows outside the bounds events may be anything, and so may what does not fit in an integer.
+    // In rows outside the bounds, events may have any value, including ones that do not fit in an integer.
     let (column0, column1) = C::columns(t, width, || (of_i(&batch.column0), of_i(&batch.column1)));
     let left = t.min_i(t.max_i(left, column0), column1);
     let right = t.max_i(t.min_i(right, column1), column0);

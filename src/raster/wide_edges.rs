@@ -1,22 +1,22 @@
-//! Triangles wider than 32,768 pixels, one by one: their products do not fit in f64, so integers decide.
+//! Triangles wider than 32,768 pixels, one by one: their products do not fit in f64, so integer arithmetic is used.
 //!
-//! The constant part of an edge's event is computed as a quotient and a remainder of 128-bit integers and rounded
-//! once. With coordinates up to 2^26 what remains, that rounding and those of the slope, of its product with the
-//! row and of the sum, is below half of the tolerance wherever the event falls on the screen.
+//! The constant part of an edge's event is computed as quotient and remainder of 128-bit integers and rounded once.
+//! With coordinates up to 2^26 the remaining error (this rounding and those of the slope, of its product with the row,
+//! and of the sum) is below half of the tolerance wherever the event is on the screen.
 
 use super::batch::Batch;
 use super::bits;
 
-/// Out of the way, in pixels.
+/// A position, in pixels, at which an edge bounds nothing.
 const UNBOUNDED: f64 = crate::geometry::coverage::UNBOUNDED as f64;
 
 /// Corner `k` of a lane.
 fn corner(batch: &Batch, lane: usize, k: usize) -> (i64, i64) {
-    // SAFETY: set-up stores the corners where a triangle is wide.
+    // SAFETY: set-up stores the corners of wide triangles.
     unsafe { (batch.corners[3 * k].get(lane) as i64, batch.corners[3 * k + 1].get(lane) as i64) }
 }
 
-/// The lanes that face the eye, with the exact sign of their area for those in `wide`.
+/// The front-facing lanes, using the exact sign of the area for those in `wide`.
 #[cold]
 pub(crate) fn correct_facing(batch: &Batch, alive: u32, wide: u32) -> u32 {
     let mut lanes = alive & !wide;
@@ -57,7 +57,7 @@ fn replace(batch: &mut Batch, wide: u32) {
     }
 }
 
-/// Constant part and slope of the event of an edge from `upper` down to `lower`; `None` for a horizontal one.
+/// Constant part and slope of the event of an edge from `upper` down to `lower`; `None` for a horizontal edge.
 fn edge((x0, y0): (i64, i64), (x1, y1): (i64, i64)) -> Option<(f64, f64)> {
     let (dx, dy) = (i128::from(x1 - x0), i128::from(y1 - y0));
     if dy == 0 {

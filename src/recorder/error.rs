@@ -1,23 +1,23 @@
-//! What can go wrong with a recording.
+//! The errors of the frame recorder.
 
 use core::fmt;
 use std::io;
 
-/// Why a frame was not recorded or a recording not loaded.
+/// Why a frame was not recorded, or a recording not loaded.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The object records already.
+    /// The object is already recording.
     Busy,
-    /// The file could not be made, written or read.
+    /// The file could not be created, written or read.
     File(io::Error),
-    /// There is no memory for what is in the file.
+    /// There is not enough memory for the file's contents.
     OutOfMemory,
-    /// The file is no recording, or it is cut or broken.
+    /// The file is not a recording, or is truncated or corrupt.
     Invalid {
-        /// The byte of the file from which on it makes no sense.
+        /// Offset of the first invalid byte of the file.
         offset: usize,
-        /// What is wrong there.
+        /// The error at that byte.
         why: &'static str,
     },
 }

@@ -1,4 +1,4 @@
-//! A file into calls. Every count is compared with what is left of the file before anything is made of it.
+//! Loads recordings. Every count is checked against the remaining size of the file before anything is allocated.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::{
     Vertices,
 };
 
-/// A recorded frame, or several.
+/// One or more recorded frames.
 ///
 /// ```
 /// use masked_occlusion_culling::{CullingResult, DrawOptions, MaskedOcclusionCulling, Recording, Settings, Vertices};
@@ -57,11 +57,11 @@ pub enum RecordedCall {
     TestTriangles(Box<RecordedMesh>),
 }
 
-/// A rectangle and what was answered.
+/// A tested rectangle and its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedRect {
-    /// The answer, where one is known.
+    /// The result, if known.
     pub result: Option<CullingResult>,
     /// `x_min`, `y_min`, `x_max`, `y_max` in normalised device coordinates.
     pub edges: [f32; 4],
@@ -69,27 +69,27 @@ pub struct RecordedRect {
     pub w_min: f32,
 }
 
-/// Triangles and what was answered.
+/// Drawn or tested triangles and their result.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedMesh {
-    /// The answer, where one is known.
+    /// The result, if known.
     pub result: Option<CullingResult>,
-    /// The vertices, in words of which the layout says which are which.
+    /// The vertices, in words that the layout interprets.
     pub vertices: Vec<f32>,
-    /// Their space: where the coordinates of a vertex lie, and the matrix, if there is one.
+    /// Their space: the position of the coordinates within a vertex, and the matrix, if there is one.
     pub space: VertexSpace,
-    /// Three a triangle, each the number of a vertex.
+    /// Three vertex indices per triangle.
     pub triangles: Vec<u32>,
-    /// Winding and planes.
+    /// Winding and clip planes.
     pub options: DrawOptions,
 }
 
 impl RecordedMesh {
-    /// The vertices as a draw takes them.
+    /// The vertices in the form that a draw takes.
     ///
     /// # Errors
-    /// [`Error::InvalidLayout`]; never of what was loaded.
+    /// [`Error::InvalidLayout`], but never for a loaded recording.
     pub fn vertices(&self) -> Result<Vertices<'_>, Error> {
         Vertices::new(&self.vertices, self.space)
     }
@@ -99,13 +99,13 @@ impl Recording {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`RecordingError::File`]; [`RecordingError::OutOfMemory`]; [`RecordingError::Invalid`] for one that is empty, cut, or no
-    /// recording.
+    /// [`RecordingError::File`]; [`RecordingError::OutOfMemory`]; [`RecordingError::Invalid`] for a file that is empty,
+    /// truncated, or not a recording.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         Self::from_bytes(&std::fs::read(path)?)
     }
 
-    /// Reads the bytes of a file. What follows the end marker does not matter.
+    /// Reads the bytes of a file. Anything after the end marker is ignored.
     ///
     /// # Errors
     /// [`RecordingError::OutOfMemory`], [`RecordingError::Invalid`].
@@ -121,7 +121,8 @@ impl Recording {
         reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "no buffer has this resolution")?;
         let mut calls = Vec::new();
         loop {
-            // A call may be a byte of the file: memory that is not there is an error, not an end of the program.
+            // A call may be as small as one byte of the file, so running out of memory must be an error instead of
+            // aborting the program.
             calls.try_reserve(1).map_err(|_| RecordingError::OutOfMemory)?;
             reader.check(calls.len() < i32::MAX as usize, "more calls than can be counted")?;
             calls.push(match reader.byte()? {
@@ -154,7 +155,7 @@ impl<'a> Reader<'a> {
         Ok(&rest[..len])
     }
 
-    /// An error in the bytes just read.
+    /// An error at the bytes just read.
     fn invalid(&self, why: &'static str) -> RecordingError {
         RecordingError::Invalid { offset: self.at, why }
     }
@@ -185,7 +186,7 @@ impl<'a> Reader<'a> {
         Ok(f32::from_bits(self.word()?))
     }
 
-    /// Words that together are in the file.
+    /// Reads words, after checking that the file has that many.
     fn words(&mut self, count: usize, each: usize, why: &'static str) -> Result<Vec<u32>, RecordingError> {
         let len = count.checked_mul(each).and_then(|n| n.checked_mul(4)).ok_or_else(|| self.invalid(why))?;
         let (from, _) = self.take(len)?.as_chunks::<4>();

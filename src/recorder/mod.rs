@@ -1,14 +1,14 @@
-//! The frame recorder: what an object was told and what it answered, in a file, to be played again.
+//! The frame recorder: writes an object's calls and its answers to a file, for replay.
 //!
 //! ```text
 //! write.rs   calls ──> file      while an object records
-//! load.rs    file ──> Recording  checked: a file is somebody else's
+//! load.rs    file ──> Recording  checked, since the file may come from anywhere
 //! (`culling/replay.rs` plays a Recording on an object and compares its answers.)
 //! format.rs  the bytes of both
 //! ```
 //!
-//! Recorded are clears, draws and queries, those through a thread pool included; merges and binned lists are not. Of
-//! the vertices the coordinates are written, and zeros for whatever lies between them.
+//! Clears, draws and queries are recorded, including those through a thread pool; merges and binned lists are not. Of
+//! the vertices, the coordinates are written, with zeros for anything between them.
 
 mod error;
 mod format;
@@ -31,20 +31,20 @@ use write::Writer;
 /// The recorder of an object.
 #[derive(Default)]
 pub(crate) struct Recorder {
-    /// Whether there is a file. All that a call costs while there is none.
+    /// Whether there is a file; this flag is the only cost of a call while there is none.
     on: AtomicBool,
     state: Mutex<State>,
 }
 
-/// What a file begins with: near plane, and width and height.
+/// The beginning of a file: near plane, and width and height.
 type Header = (f32, (u32, u32));
 
 #[derive(Default)]
 struct State {
     file: Option<Writer<BufWriter<File>>>,
-    /// The header, until something follows it.
+    /// The header, until something is written after it.
     header: Option<Header>,
-    /// Why nothing more was written.
+    /// The error that stopped the recording.
     failed: Option<io::Error>,
 }
 
@@ -65,10 +65,10 @@ impl Recorder {
         let mut state = self.lock();
         if let Err(error) = state.write(write) {
             if error.kind() == io::ErrorKind::InvalidInput {
-                // Nothing of the call was written: what came before stays whole.
+                // Nothing of the call was written, so what came before is intact.
                 let _ = state.end();
             }
-            // Half an entry is worth nothing, and so is what follows it.
+            // A partial entry is useless, and so is anything after it.
             state.file = None;
             state.failed.get_or_insert(error);
             self.on.store(false, Relaxed);
@@ -114,7 +114,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Ends the file. Nothing to do where there is none.
+    /// Ends the file, if there is one.
     pub fn stop(&self) -> Result<(), RecordingError> {
         let mut state = self.lock();
         self.on.store(false, Relaxed);
@@ -124,7 +124,7 @@ impl Recorder {
         Ok(state.end()?)
     }
 
-    /// The object's near plane or resolution is another one from now on. That ends a file whose header says otherwise.
+    /// Tells the recorder that the object's near plane or resolution changed. That ends a file whose header differs.
     pub fn changed(&self, near: f32, resolution: Option<(u32, u32)>) {
         if self.is_on() {
             let mut state = self.lock();
@@ -133,7 +133,7 @@ impl Recorder {
                 return;
             }
             self.on.store(false, Relaxed);
-            // An error stays for who stops.
+            // The error is kept and reported by `stop`.
             if let Err(error) = state.end() {
                 state.failed.get_or_insert(error);
             }
@@ -152,7 +152,7 @@ impl State {
     }
 
     fn end(&mut self) -> io::Result<()> {
-        // The header of a recording of nothing.
+        // The header of an empty recording.
         let written = self.write(|_| Ok(()));
         let ended = self.file.take().map_or(Ok(()), Writer::end);
         written.and(ended)
@@ -161,7 +161,7 @@ impl State {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        // Nobody is there any more to be told.
+        // There is nobody left to report an error to.
         let _ = self.stop();
     }
 }

@@ -1,4 +1,4 @@
-//! Calls into a file.
+//! Writes calls to a file.
 
 use std::io::{self, Write};
 
@@ -7,7 +7,7 @@ use crate::source::Mesh;
 use crate::vertices::VertexSource;
 use crate::{CullingResult, VertexLayout};
 
-/// Vertices of more bytes are written without what lies between their coordinates.
+/// Vertices with a larger stride are written without the bytes between their coordinates.
 const LARGEST_VERTEX: i32 = 256;
 
 pub(super) struct Writer<W> {
@@ -88,8 +88,8 @@ fn of_result(result: Option<CullingResult>) -> i32 {
     result.map_or(UNKNOWN, |result| result as i32)
 }
 
-/// The layout of the vertices in the file: that of the call where each vertex has its coordinates to itself, in words, else
-/// packed.
+/// The layout of the vertices in the file: the call's own if the coordinates of each vertex are separate from those of
+/// others and word-aligned, else packed.
 fn written_layout(layout: VertexLayout) -> VertexLayout {
     let VertexLayout { stride, offset_y: y, offset_zw: zw } = layout;
     let words = stride % 4 == 0 && y % 4 == 0 && zw % 4 == 0;

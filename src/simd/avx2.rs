@@ -1,7 +1,7 @@
 //! AVX2: eight lanes. Masks are vectors of all ones or all zeros; a `D` is two registers of four.
 //!
-//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
-//! the caller of an `unsafe fn` vouches for its pointers.
+//! SAFETY of every block without its own comment: the token `self` proves that the processor has the instruction set,
+//! and the caller of an `unsafe fn` guarantees that its pointers are valid.
 
 use super::arch::*;
 use super::compress::EIGHT_LANES;
@@ -17,7 +17,7 @@ pub(super) unsafe fn enter<J: Job>(job: J) -> J::Output {
     job.run(Avx2(()))
 }
 
-/// Sixteen lanes, as AVX-512 has.
+/// Enters a job with sixteen lanes, as AVX-512 has.
 ///
 /// # Safety
 /// As [`enter`].
@@ -35,8 +35,8 @@ unsafe fn outlined<J: Outlined<Avx2>>(s: Avx2, job: J) -> J::Output {
     job.run(s)
 }
 
-/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, for which the
-/// instruction needs none.
+/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, which the
+/// instruction itself does not need.
 ///
 /// # Safety
 /// The processor has the instruction set.
@@ -95,7 +95,7 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m256 {
-        // SAFETY: a stride that fits in 27 bits keeps 7 of them in 31.
+        // SAFETY: a stride of at most 27 bits times 7 fits in 31 bits.
         unsafe {
             if stride >> 27 == 0 {
                 let offsets = _mm256_mullo_epi32(self.iota(), _mm256_set1_epi32(stride as i32));
@@ -112,7 +112,7 @@ impl Simd for Avx2 {
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: __m256i) -> [__m256; 2] {
         unsafe {
-            // What a gather costs is its number of lanes.
+            // A gather's cost depends on its number of lanes.
             let low = _mm256_castpd_ps(_mm256_i32gather_pd::<4>(p.cast(), _mm256_castsi256_si128(index)));
             let high = _mm256_castpd_ps(_mm256_i32gather_pd::<4>(p.cast(), _mm256_extracti128_si256::<1>(index)));
             // Pairs 0, 1, 4, 5 and 2, 3, 6, 7 in the halves of a register.
@@ -127,7 +127,8 @@ impl Simd for Avx2 {
         unsafe {
             let load = |k: usize| _mm256_loadu_si256(p.add(8 * k).cast());
             let (a, b, c): (__m256i, __m256i, __m256i) = (load(0), load(1), load(2));
-            // Lane j of output k is word 3 * j + k of the 24: blend what is in place, then one permute.
+            // Lane j of output k is word 3 * j + k of the 24: blend the words that are already in place, then permute
+            // once.
             let pick = |m0: [i32; 8], x: __m256i, y: __m256i, z: __m256i| {
                 let order = _mm256_setr_epi32(m0[0], m0[1], m0[2], m0[3], m0[4], m0[5], m0[6], m0[7]);
                 (x, y, z, order)
@@ -210,7 +211,7 @@ impl Simd for Avx2 {
     }
     #[inline(always)]
     fn prefetch(self, p: *const u32) {
-        // SAFETY: a prefetch reads nothing.
+        // SAFETY: a prefetch does not access memory.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
     }
     #[inline(always)]

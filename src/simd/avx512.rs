@@ -1,7 +1,7 @@
 //! AVX-512 (F, BW, DQ, VL), sixteen lanes. Masks are mask registers; a `D` is two registers.
 //!
-//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
-//! the caller of an `unsafe fn` vouches for its pointers.
+//! SAFETY of every block without its own comment: the token `self` proves that the processor has the instruction set,
+//! and the caller of an `unsafe fn` guarantees that its pointers are valid.
 
 use super::arch::*;
 use super::{Job, Outlined, Simd, record, store_relaxed, strided};
@@ -24,8 +24,8 @@ unsafe fn outlined<S, J: Outlined<S>>(s: S, job: J) -> J::Output {
     job.run(s)
 }
 
-/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, for which the
-/// instruction needs none.
+/// All ones shifted left by each lane's count. The intrinsic adds a comparison for counts beyond 31, which the
+/// instruction itself does not need.
 ///
 /// # Safety
 /// The processor has the instruction set.
@@ -105,7 +105,7 @@ impl Simd for Avx512 {
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: __m512i) -> [__m512; 2] {
         unsafe {
-            // What a gather costs is its number of lanes.
+            // A gather's cost depends on its number of lanes.
             let low = _mm512_castpd_ps(_mm512_i32gather_pd::<4>(_mm512_castsi512_si256(index), p.cast()));
             let high = _mm512_castpd_ps(_mm512_i32gather_pd::<4>(_mm512_extracti32x8_epi32::<1>(index), p.cast()));
             let first = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
@@ -124,7 +124,7 @@ impl Simd for Avx512 {
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> __m512 {
         unsafe {
-            // A stride that fits in 26 bits keeps 15 of them in 31.
+            // A stride of at most 26 bits times 15 fits in 31 bits.
             if stride >> 26 == 0 {
                 let offsets = _mm512_mullo_epi32(self.iota(), _mm512_set1_epi32(stride as i32));
                 return _mm512_i32gather_ps::<1>(offsets, p.cast());
@@ -175,7 +175,7 @@ impl Simd for Avx512 {
         unsafe {
             let (a, b) = (_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16)));
             let (c, d) = (_mm512_loadu_ps(p.add(32)), _mm512_loadu_ps(p.add(48)));
-            // Eight firsts, then eight seconds; likewise thirds and fourths.
+            // Eight first floats, then eight second ones; likewise the third and fourth.
             let low = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
             let high = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31);
             let (ab, cd) = (_mm512_permutex2var_ps(a, low, b), _mm512_permutex2var_ps(c, low, d));
@@ -237,7 +237,7 @@ impl Simd for Avx512 {
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: __mmask16, x: __m512i) -> usize {
         unsafe {
-            // In a register, then stored whole: the compressing store is microcode on some processors.
+            // Compressed in a register, then stored whole: the compressing store is microcoded on some processors.
             _mm512_storeu_epi32(p.cast(), _mm512_maskz_compress_epi32(m, x));
             m.count_ones() as usize
         }
@@ -320,7 +320,7 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     fn prefetch(self, p: *const u32) {
-        // SAFETY: a prefetch reads nothing.
+        // SAFETY: a prefetch does not access memory.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
     }
     #[inline(always)]

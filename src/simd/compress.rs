@@ -1,6 +1,6 @@
-//! Tables that bring the lanes of a mask together, for instruction sets without such an instruction.
+//! Tables that move the lanes in a mask together, for instruction sets without a compress instruction.
 
-/// For each mask, the lanes that it keeps, first to last, and then lane 0.
+/// For each mask, its lanes from first to last, followed by lane 0.
 pub(super) static EIGHT_LANES: [[u8; 8]; 256] = eight_lanes();
 
 const fn eight_lanes() -> [[u8; 8]; 256] {
@@ -20,7 +20,7 @@ const fn eight_lanes() -> [[u8; 8]; 256] {
     table
 }
 
-/// For each mask, the bytes of the lanes that it keeps, first to last.
+/// For each mask, the bytes of its lanes from first to last.
 #[cfg(any(
     target_arch = "x86",
     target_arch = "x86_64",

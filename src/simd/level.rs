@@ -1,4 +1,4 @@
-//! Which instruction sets the processor has, and running jobs on them.
+//! Detects the processor's instruction sets, and runs jobs on them.
 
 use super::Job;
 #[cfg(target_arch = "aarch64")]
@@ -10,12 +10,12 @@ use super::wasm;
 use super::{avx2, avx512, sse};
 use crate::Implementation;
 
-/// An instruction set that this processor has: only detection makes one, so [`run`] is safe.
+/// An instruction set that this processor has. Only detection creates one, which makes [`run`] safe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Level(Implementation);
 
 impl Level {
-    /// Every one that this processor has, the plainest first.
+    /// All levels that this processor has, the simplest first.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
         available().iter().map(|&implementation| Self(implementation))
     }
@@ -48,18 +48,18 @@ impl Level {
 }
 
 impl Implementation {
-    /// Every instruction set that this processor can run, the plainest first.
+    /// Every instruction set that this processor can run, the simplest first.
     pub fn available() -> &'static [Implementation] {
         available()
     }
 
-    /// The best instruction set that this processor has and that `self`, as the highest allowed,
-    /// permits. On another architecture than the named one, anything but `Scalar` permits all.
+    /// The best instruction set that this processor has, up to `self`. If `self` belongs to another architecture and is
+    /// not `Scalar`, there is no limit.
     pub fn capped(self) -> Implementation {
         Level::capped(self).implementation()
     }
 
-    /// Whether it belongs to the architecture that the library is compiled for (this processor may still lack it).
+    /// Whether it belongs to the architecture that the library is compiled for (the processor may still lack it).
     fn is_of_this_architecture(self) -> bool {
         match self {
             Implementation::Scalar => true,
@@ -77,7 +77,7 @@ impl Implementation {
 pub(crate) fn run<J: Job>(level: Level, job: J) -> J::Output {
     match level.0 {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: only detection makes a level, so the processor has the instruction set.
+        // SAFETY: only detection creates a level, so the processor has the instruction set.
         Implementation::Avx512 => unsafe { avx512::enter(job) },
         #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
         // SAFETY: as above.
@@ -98,12 +98,12 @@ pub(crate) fn run<J: Job>(level: Level, job: J) -> J::Output {
     }
 }
 
-/// The same with vectors of at most eight lanes, for what sixteen cannot process. The bits are the same.
+/// The same with at most eight lanes, for work that sixteen cannot do. The bits are the same.
 #[inline]
 pub(crate) fn run_on_eight_lanes<J: Job>(level: Level, job: J) -> J::Output {
     match level.0 {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        // SAFETY: only detection makes a level, and it reports AVX-512 only beside AVX2.
+        // SAFETY: only detection creates a level, and it reports AVX-512 only together with AVX2.
         Implementation::Avx512 | Implementation::Avx2 => unsafe { avx2::enter(job) },
         _ => run(level, job),
     }
@@ -114,8 +114,8 @@ std::thread_local! {
     static SIXTEEN_LANES: core::cell::Cell<bool> = const { core::cell::Cell::new(false) };
 }
 
-/// Calls `what` with sixteen lanes, two vectors side by side, in place of AVX2's eight, on this thread only: so code for
-/// sixteen lanes is tested without AVX-512.
+/// Calls `what` with sixteen lanes, as two vectors side by side, in place of AVX2's eight, on this thread only: tests
+/// the code for sixteen lanes without AVX-512.
 #[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
 pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
     struct Reset;
@@ -129,7 +129,7 @@ pub(crate) fn with_sixteen_lanes<R>(what: impl FnOnce() -> R) -> R {
     what()
 }
 
-/// What this processor can run, the plainest first.
+/// The instruction sets that this processor can run, the simplest first.
 fn available() -> &'static [Implementation] {
     use Implementation::*;
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -157,7 +157,7 @@ fn available() -> &'static [Implementation] {
     }
     #[cfg(target_arch = "wasm32")]
     {
-        // A module either has simd128 throughout or not at all.
+        // A module uses simd128 either throughout or not at all.
         if cfg!(target_feature = "simd128") { &[Scalar, Simd128] } else { &[Scalar] }
     }
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]

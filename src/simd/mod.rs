@@ -1,13 +1,14 @@
-//! The vector layer: only the operations that the kernel needs, on every instruction set alike.
+//! The vector layer: only the operations that the kernel needs, identical on every instruction set.
 //!
-//! The kernel is written once, generic over [`Simd`], and is entered through [`run`], which takes a [`Level`] that detection
-//! made, picks the token of that instruction set (a value of size zero whose existence proves that the processor has it) and
-//! calls the [`Job`] inside a function compiled for it. For that to work, everything in between is `#[inline(always)]`: a
-//! helper that is not inlined is compiled for the baseline, and each intrinsic in it becomes a call.
+//! The kernel is written once, generic over [`Simd`], and is entered through [`run`]. That takes a [`Level`] created by
+//! detection, selects the token of that instruction set (a zero-sized value whose existence proves that the processor
+//! has it) and calls the [`Job`] inside a function compiled for it. For this to work, everything in between is
+//! `#[inline(always)]`: a helper that is not inlined is compiled for the baseline, and each intrinsic in it becomes a
+//! call.
 //!
-//! Every operation gives the same bits everywhere. Where instruction sets differ by nature, this layer
-//! fixes one meaning: `min` and `max` return their second operand when either is NaN (as x86 does),
-//! division is the IEEE one, nothing is fused (but for `mul_add_d`), and rounding to integers is to nearest even.
+//! Every operation gives the same bits everywhere. Where instruction sets differ, this layer defines the result: `min`
+//! and `max` return their second operand if either is NaN (as on x86), division is IEEE division, nothing is fused
+//! (except in `mul_add_d`), and rounding to integers is to nearest even.
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx2;
@@ -44,12 +45,12 @@ pub(crate) use level::{Level, run, run_on_eight_lanes};
 
 use compress::EIGHT_LANES;
 
-/// No vector has more lanes.
+/// The largest number of lanes of any vector.
 pub(crate) const MAX_LANES: usize = 16;
 
 /// Vectors of `LANES` 32-bit floats (`F`) or integers (`I`), masks (`M`) and 64-bit floats (`D`).
 ///
-/// The value of the token is proof that the processor can run the operations; every method relies on it.
+/// The token's value proves that the processor can run the operations; every method relies on that.
 pub(crate) trait Simd: Copy {
     const LANES: usize;
     type F: Copy;
@@ -57,8 +58,8 @@ pub(crate) trait Simd: Copy {
     type M: Copy;
     type D: Copy;
 
-    /// Calls a job in a function of its own, compiled for this token: for code that several callers share and that takes long
-    /// enough.
+    /// Calls a job in a function of its own, compiled for this token: for code that several callers share and that runs
+    /// long enough to be worth a call.
     fn outlined<J: Outlined<Self>>(self, job: J) -> J::Output;
 
     fn f(self, x: f32) -> Self::F;
@@ -72,9 +73,9 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// As [`Self::load_f`].
     unsafe fn load_i(self, p: *const u32) -> Self::I;
-    /// The first `n` values from `p` on, zeros after them; all `LANES` for a larger `n`.
+    /// The first `n` values starting at `p`, followed by zeros; all `LANES` for a larger `n`.
     /// # Safety
-    /// Those can be read; any alignment.
+    /// These values can be read; any alignment.
     unsafe fn load_some(self, p: *const u32, n: usize) -> Self::I;
     /// # Safety
     /// `p` can be written for `LANES` values; any alignment.
@@ -85,7 +86,7 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// As [`Self::store_f`].
     unsafe fn store_d(self, p: *mut f64, x: Self::D);
-    /// A float from `p`, `p + stride`, `p + 2 * stride`, ... in bytes; any alignment.
+    /// Floats at `p`, `p + stride`, `p + 2 * stride`, ... in bytes; any alignment.
     /// # Safety
     /// Each of the `LANES` floats can be read.
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> Self::F;
@@ -109,7 +110,7 @@ pub(crate) trait Simd: Copy {
         // SAFETY: the caller's contract.
         unsafe { self.gather(table, index) }
     }
-    /// The same of 32 floats.
+    /// The same for a table of 32 floats.
     /// # Safety
     /// `table` can be read for 32 floats.
     #[inline(always)]
@@ -125,30 +126,31 @@ pub(crate) trait Simd: Copy {
     /// # Safety
     /// `p` can be read for `4 * LANES` floats; any alignment.
     unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4];
-    /// The first three floats of the records of four floats that `index[0]`, `index[3]`, `index[6]`, ... name.
+    /// The first three floats of the four-float records at `index[0]`, `index[3]`, `index[6]`, ...
     /// # Safety
-    /// `index` can be read for `3 * LANES - 2` words, and each of the records from `p` on; any alignment. `p` may be
+    /// `3 * LANES - 2` words of `index` and each of the records relative to `p` can be read; any alignment. `p` may be
     /// the address that record 0 would have.
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [Self::F; 3];
-    /// Writes `LANES` records of four floats, the last of which may be anything.
+    /// Writes `LANES` records of four floats, the last of which is unspecified.
     /// # Safety
     /// `p` can be written for `4 * LANES` floats; any alignment.
     unsafe fn store_records(self, p: *mut f32, v: [Self::F; 3]);
-    /// Writes the lanes in `m` to `p` without gaps and returns their number.
+    /// Writes the lanes in `m` to `p`, packed, and returns their number.
     /// # Safety
     /// `p` can be written for `LANES` values, whatever the mask.
     unsafe fn compress(self, p: *mut u32, m: Self::M, x: Self::I) -> usize;
 
-    /// `LANES` bytes, as numbers.
+    /// `LANES` bytes, widened to integers.
     /// # Safety
-    /// `p` can be read for as many bytes.
+    /// That many bytes can be read from `p`.
     unsafe fn load_bytes(self, p: *const u8) -> Self::I;
-    /// Writes `first` plus its number for each of the first `n` lanes that is in `m`, without gaps, and returns how many there are.
+    /// For each of the first `n` lanes that is in `m`, writes `first` plus the lane's index, packed, and returns how
+    /// many there are.
     /// # Safety
     /// As [`Self::compress`].
     #[inline(always)]
     unsafe fn list_lanes(self, p: *mut u32, m: Self::M, n: usize, first: u32) -> usize {
-        // SAFETY: the caller's contract; eight bits name a list of the table.
+        // SAFETY: the caller's contract; eight bits index a list of the table.
         unsafe {
             if Self::LANES == 8 {
                 let bits = self.mask_bits(m) & ((1 << n.min(8)) - 1);
@@ -167,8 +169,8 @@ pub(crate) trait Simd: Copy {
     fn div(self, a: Self::F, b: Self::F) -> Self::F;
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `min` of numbers that are not negative (nor -0): their bits compare as integers do, which is cheaper here and
-    /// there.
+    /// `min` of values that are not negative (nor -0): their bits compare like integers, which is cheaper on some
+    /// instruction sets.
     #[inline(always)]
     fn min_positive(self, a: Self::F, b: Self::F) -> Self::F {
         self.min(a, b)
@@ -183,25 +185,25 @@ pub(crate) trait Simd: Copy {
     fn le(self, a: Self::F, b: Self::F) -> Self::M;
     fn eq(self, a: Self::F, b: Self::F) -> Self::M;
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
-    /// To the nearest integer, ties to even; undefined (but harmless) where it does not fit.
+    /// To the nearest integer, ties to even; unspecified (but harmless) if it does not fit.
     fn round(self, a: Self::F) -> Self::I;
-    /// Towards zero; undefined (but harmless) where it does not fit.
+    /// Towards zero; unspecified (but harmless) if it does not fit.
     fn trunc(self, a: Self::F) -> Self::I;
     fn to_f(self, a: Self::I) -> Self::F;
     fn bits(self, a: Self::F) -> Self::I;
     fn float_of_bits(self, a: Self::I) -> Self::F;
-    /// Asks for the cache line at `p`, which may be any address.
+    /// Prefetches the cache line at `p`, which may be any address.
     #[inline(always)]
     fn prefetch(self, _: *const u32) {}
-    /// The least of the first eight lanes, none of which is negative, to `p`; of the second eight, if there are any, to `p + pitch`. A vector of
-    /// four lanes has one least.
+    /// Writes the least of the first eight lanes, none of which is negative, to `p`, and the least of the second eight,
+    /// if there are any, to `p + pitch`. A vector of four lanes has one least value.
     /// # Safety
     /// Both can be written.
     unsafe fn store_z_min(self, p: *mut f32, pitch: usize, a: Self::F);
 
     fn add_i(self, a: Self::I, b: Self::I) -> Self::I;
     fn sub_i(self, a: Self::I, b: Self::I) -> Self::I;
-    /// `a - b`, or 0 where that is negative, for each 16 bits: numbers from 0 to 65535.
+    /// `a - b`, or 0 if that is negative, for each 16-bit half: values from 0 to 65535.
     fn sub_sat(self, a: Self::I, b: Self::I) -> Self::I;
     fn and(self, a: Self::I, b: Self::I) -> Self::I;
     fn or(self, a: Self::I, b: Self::I) -> Self::I;
@@ -226,9 +228,9 @@ pub(crate) trait Simd: Copy {
         largest
     }
     fn shl<const N: i32>(self, a: Self::I) -> Self::I;
-    /// Shifts in copies of the sign.
+    /// Arithmetic shift right.
     fn sra<const N: i32>(self, a: Self::I) -> Self::I;
-    /// All ones shifted left by each lane's count, from 0 to 65535; by 32 and more they are gone.
+    /// All ones shifted left by each lane's count, from 0 to 65535; a count of 32 or more gives 0.
     fn ones_shl(self, count: Self::I) -> Self::I;
     fn gt_i(self, a: Self::I, b: Self::I) -> Self::M;
     fn eq_i(self, a: Self::I, b: Self::I) -> Self::M;
@@ -240,7 +242,7 @@ pub(crate) trait Simd: Copy {
     fn or_m(self, a: Self::M, b: Self::M) -> Self::M;
     /// `!a & b`.
     fn and_not_m(self, a: Self::M, b: Self::M) -> Self::M;
-    /// One bit a lane, lane 0 lowest.
+    /// One bit per lane, lane 0 lowest.
     fn mask_bits(self, m: Self::M) -> u32;
     /// Are all lanes in the mask?
     #[inline(always)]
@@ -249,7 +251,7 @@ pub(crate) trait Simd: Copy {
     }
     /// [`Self::load_some`] with `fill` after the first `n` values.
     /// # Safety
-    /// As there.
+    /// As [`Self::load_some`].
     #[inline(always)]
     unsafe fn load_filled(self, p: *const u32, n: usize, fill: u32) -> Self::I {
         // SAFETY: the caller's contract.
@@ -257,7 +259,7 @@ pub(crate) trait Simd: Copy {
     }
     /// [`Self::gather_pairs`] of words that other threads may be writing with [`store_relaxed`].
     /// # Safety
-    /// As there.
+    /// As [`Self::gather_pairs`].
     #[inline(always)]
     unsafe fn gather_pairs_relaxed(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
         let (mut indices, mut words) = ([0_u32; MAX_LANES], [[0_u32; MAX_LANES]; 2]);
@@ -287,7 +289,8 @@ pub(crate) trait Simd: Copy {
     fn add_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn sub_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn mul_d(self, a: Self::D, b: Self::D) -> Self::D;
-    /// `a * b + c`, rounded once or twice as the instruction set likes: for what is shown to come to the same.
+    /// `a * b + c`, rounded once or twice depending on the instruction set: only for operands for which both give the
+    /// same result.
     #[inline(always)]
     fn mul_add_d(self, a: Self::D, b: Self::D, c: Self::D) -> Self::D {
         self.add_d(self.mul_d(a, b), c)
@@ -307,8 +310,8 @@ pub(crate) unsafe fn store_relaxed(p: *mut f32, x: f32) {
     unsafe { AtomicU32::from_ptr(p.cast()) }.store(x.to_bits(), Relaxed);
 }
 
-/// Address of record `index[3 * lane]` of four floats. With 32-bit pointers the product may wrap around: `p` is where record 0
-/// would be, and may itself have wrapped.
+/// Address of the four-float record `index[3 * lane]`. With 32-bit pointers the product may wrap around: `p` is where
+/// record 0 would be, and may itself have wrapped.
 ///
 /// # Safety
 /// The index can be read.
@@ -319,20 +322,20 @@ unsafe fn record(p: *const f32, index: *const u32, lane: usize) -> *const f32 {
     p.wrapping_add((index as usize).wrapping_mul(4))
 }
 
-/// Address of the float `k` strides after `p`. With vertices in separate arrays and 32-bit pointers, the last may be more than
-/// `isize::MAX` bytes after the first.
+/// Address of the float `k` strides after `p`. With vertices in separate arrays and 32-bit pointers, the last one may
+/// be more than `isize::MAX` bytes after the first.
 #[inline(always)]
 fn strided(p: *const u8, k: usize, stride: usize) -> *const f32 {
     p.wrapping_add(k.wrapping_mul(stride)).cast()
 }
 
-/// A piece of the kernel that is compiled once per token and called, not inlined.
+/// A part of the kernel that is compiled once per token and called, not inlined.
 pub(crate) trait Outlined<S> {
     type Output;
     fn run(self, s: S) -> Self::Output;
 }
 
-/// A piece of the kernel that runs on any instruction set.
+/// A part of the kernel that runs on any instruction set.
 pub(crate) trait Job {
     type Output;
     fn run<S: Simd>(self, s: S) -> Self::Output;

@@ -1,7 +1,7 @@
-//! NEON, aarch64's baseline: four lanes, used two by two. Masks are vectors of all ones or all zeros.
+//! NEON, the baseline of aarch64: four lanes, used in pairs of vectors. Masks are vectors of all ones or all zeros.
 //!
-//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
-//! the caller of an `unsafe fn` vouches for its pointers.
+//! SAFETY of every block without its own comment: the token `self` proves that the processor has the instruction set,
+//! and the caller of an `unsafe fn` guarantees that its pointers are valid.
 
 use core::arch::aarch64::*;
 
@@ -13,7 +13,7 @@ use super::{Job, Outlined, Simd, record, store_relaxed, strided};
 pub(super) struct Neon(());
 
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
-    // Every aarch64 processor that Rust's std supports has NEON: the token needs no more proof.
+    // Every aarch64 processor that Rust's std supports has NEON, so the token needs no further proof.
     job.run(Pair(Neon(())))
 }
 
@@ -261,7 +261,7 @@ impl Simd for Neon {
     #[inline(always)]
     fn ones_shl(self, count: Self::I) -> int32x4_t {
         unsafe {
-            // The instruction looks at a count's lowest byte only.
+            // The instruction only uses the lowest byte of a count.
             vshlq_s32(vdupq_n_s32(-1), vminq_s32(count, vdupq_n_s32(32)))
         }
     }

@@ -1,11 +1,11 @@
-//! Twice as many lanes: two vectors of a narrower instruction set side by side.
+//! Doubles the number of lanes: two vectors of a narrower instruction set side by side.
 
 use super::{Outlined, Simd, strided};
 
 #[derive(Clone, Copy)]
 pub(super) struct Pair<S>(pub S);
 
-/// A job of the pair, as a job of the half.
+/// A job for the pair, as a job for the half.
 struct InPair<J>(J);
 
 impl<S: Simd, J: Outlined<Pair<S>>> Outlined<S> for InPair<J> {

@@ -7,7 +7,7 @@ use crate::float_environment::round_ties_even;
 #[derive(Clone, Copy)]
 pub(super) struct Scalar4;
 
-/// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
+/// Not inlined, like those of other instruction sets: the caller would have to save the registers that it uses.
 #[inline(never)]
 pub(super) fn enter<J: Job>(job: J) -> J::Output {
     job.run(Pair(Scalar4))
@@ -239,7 +239,7 @@ impl Simd for Scalar4 {
     }
     #[inline(always)]
     fn round(self, a: [f32; 4]) -> [i32; 4] {
-        // What is too large for an i32 may round otherwise, but is clamped to the same one.
+        // A value too large for an i32 may be rounded differently, but is clamped to the same result.
         lanes!(a => round_ties_even(f64::from(a)) as i32)
     }
     #[inline(always)]

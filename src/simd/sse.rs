@@ -1,8 +1,8 @@
-//! SSE2, the baseline of x86-64 and i686, and SSE4.1: four lanes, used two by two. Masks are vectors of all ones or
-//! all zeros. What SSE2 lacks (blends, byte shuffles, some minima) is spelled out.
+//! SSE2, the baseline of x86-64 and i686, and SSE4.1: four lanes, used in pairs of vectors. Masks are vectors of all
+//! ones or all zeros. Operations that SSE2 lacks (blends, byte shuffles, some minima) are emulated.
 //!
-//! SAFETY of every block without a comment of its own: the token `self` proves that the processor has the instruction set, and
-//! the caller of an `unsafe fn` vouches for its pointers.
+//! SAFETY of every block without its own comment: the token `self` proves that the processor has the instruction set,
+//! and the caller of an `unsafe fn` guarantees that its pointers are valid.
 
 use super::arch::*;
 use super::compress::FOUR_LANES;
@@ -15,7 +15,7 @@ pub(super) struct Sse2(());
 #[derive(Clone, Copy)]
 pub(super) struct Sse41(());
 
-/// Not inlined, as those with an instruction set of their own are not: whoever calls would save the registers that it needs.
+/// Not inlined, like those of other instruction sets: the caller would have to save the registers that it uses.
 #[inline(never)]
 pub(super) fn enter_sse2<J: Job>(job: J) -> J::Output {
     // The target has SSE2, so the token needs no further proof.
@@ -37,7 +37,7 @@ unsafe fn apart_sse41<J: Outlined<Sse41>>(s: Sse41, job: J) -> J::Output {
     job.run(s)
 }
 
-/// The lanes as integers, two at a time where registers have 64 bits.
+/// The lanes as integers, extracted two at a time where registers have 64 bits.
 ///
 /// # Safety
 /// The processor has SSE2.
@@ -59,7 +59,7 @@ unsafe fn numbers(x: __m128i) -> [u32; 4] {
     }
 }
 
-/// What SSE2 and SSE4.1 do alike.
+/// The operations that SSE2 and SSE4.1 share.
 macro_rules! shared {
     () => {
         const LANES: usize = 4;
@@ -249,7 +249,7 @@ macro_rules! shared {
         }
         #[inline(always)]
         fn prefetch(self, p: *const u32) {
-            // SAFETY: a prefetch reads nothing.
+            // SAFETY: a prefetch does not access memory.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
         }
         #[inline(always)]
@@ -294,8 +294,8 @@ macro_rules! shared {
         #[inline(always)]
         fn ones_shl(self, count: Self::I) -> __m128i {
             unsafe {
-                // There is no shift by a count of each lane's own: 2^count through the exponent of a float. What comes
-                // of counts beyond 31 is masked away.
+                // There is no shift by a separate count per lane, so 2^count is made through the exponent of a float.
+                // Results for counts beyond 31 are masked out.
                 let power =
                     _mm_cvttps_epi32(_mm_castsi128_ps(_mm_slli_epi32::<23>(_mm_add_epi32(count, _mm_set1_epi32(127)))));
                 let ones = _mm_sub_epi32(_mm_setzero_si128(), power);

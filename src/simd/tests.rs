@@ -1,4 +1,4 @@
-//! Every operation on every instruction set against the scalar one, bit by bit.
+//! Compares every operation on every instruction set with the scalar one, bit by bit.
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::with_sixteen_lanes;
@@ -14,7 +14,7 @@ struct Input {
     b: [f32; N],
     i: [u32; N],
     j: [u32; N],
-    /// From 0 to 65535, mostly to 32.
+    /// From 0 to 65535, mostly up to 32.
     count: [u32; N],
     /// Below N.
     index: [u32; N],
@@ -31,7 +31,7 @@ impl Job for AllOperations {
     }
 }
 
-/// The results of all operations, lane after lane, operation after operation; vectors of any width give the same.
+/// The results of all operations, lane by lane within each operation; vectors of any width give the same.
 #[inline(always)]
 fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
     let mut out: Vec<Vec<u32>> = Vec::new();
@@ -57,7 +57,7 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             unsafe { s.store_i(lanes.as_mut_ptr(), x) };
             lanes[..S::LANES].to_vec()
         };
-        // The bits of a NaN may differ between instruction sets; that it is one may not.
+        // The bits of a NaN may differ between instruction sets; whether a result is NaN may not.
         let canonical = |x: u32| if f32::from_bits(x).is_nan() { 0x7fc0_0000 } else { x };
         let floats = |x: S::F| lanes(s.bits(x)).into_iter().map(canonical).collect::<Vec<_>>();
         let masks = |m: S::M| lanes(s.select_i(m, s.i(-1), s.i(0)));
@@ -108,13 +108,14 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
         let sums =
             [s.add_d(da, db), s.sub_d(da, db), s.mul_d(da, db), s.div_d(da, db), s.min_d(da, db), s.max_d(da, db)];
         results.extend(sums.map(doubles));
-        // Of integers, which come to the same rounded once or twice.
+        // With integers, for which rounding once or twice gives the same result.
         let whole = |x: S::I| s.to_d(s.to_f(s.sra::<12>(x)));
         results.push(doubles(s.mul_add_d(whole(i), whole(j), whole(index))));
         results.push(floats(s.d_to_f(s.add_d(da, db))));
         results.push(lanes(s.d_to_i(s.to_d(s.mul(s.to_f(s.sra::<4>(i)), s.f(0.37))))));
         results.push(masks(s.first(S::LANES)));
-        // SAFETY: indices are below N; an f32 every 8 bytes from the middle of a 4 N long array stays inside.
+        // SAFETY: indices are below N; one f32 every 8 bytes, starting in the middle of an array of length 4 N, stays
+        // inside.
         unsafe {
             results.push(floats(s.gather(input.a.as_ptr(), index)));
             let pairs: Vec<f32> = input.a.iter().copied().chain([0.5]).collect();
@@ -159,12 +160,12 @@ fn operations<S: Simd>(s: S, input: &Input) -> Vec<u32> {
             all.extend(part);
         }
     }
-    // Of each eight lanes; a vector of four has the least of its own.
+    // The least of each eight lanes; a vector of four has its own.
     let numbers = input.a.map(|x| if x.is_nan() { 0.0 } else { x.abs() });
     let mut least = [f32::INFINITY; 2];
     for first in (0..N).step_by(S::LANES) {
         let mut stored = [f32::INFINITY; 2];
-        // SAFETY: N floats hold a vector, two floats the least of its halves.
+        // SAFETY: N floats hold a vector, and two floats hold the least values of its halves.
         unsafe { s.store_z_min(stored.as_mut_ptr(), 1, s.load_f(numbers.as_ptr().add(first))) };
         for (k, x) in stored.into_iter().enumerate().take(S::LANES.div_ceil(8)) {
             least[first / 8 + k] = least[first / 8 + k].min(x);
@@ -193,7 +194,7 @@ impl Bits {
             [0.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1.0, f32::MAX, f32::MIN_POSITIVE];
         match self.next() % 4 {
             0 if special => SPECIAL[self.next() as usize % SPECIAL.len()],
-            // Of middling size, so that no result is a denormal number or overflows.
+            // Of moderate size, so that no result is denormal or overflows.
             _ => f32::from_bits((self.next() & 0x807f_ffff) | (96 + self.next() % 60) << 23),
         }
     }

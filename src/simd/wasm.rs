@@ -1,8 +1,8 @@
-//! WebAssembly's simd128: four lanes, used two by two. Masks are vectors of all ones or all zeros.
+//! WebAssembly's simd128: four lanes, used in pairs of vectors. Masks are vectors of all ones or all zeros.
 //!
-//! A module that contains these instructions does not load where they are missing, so there is nothing to detect: they
-//! are used when the whole crate is compiled with `-C target-feature=+simd128`. Relaxed SIMD is not used, because its results
-//! may differ between machines. The operations on values are safe functions here.
+//! A module that contains these instructions does not load on an engine without them, so there is nothing to detect:
+//! they are used if the whole crate is compiled with `-C target-feature=+simd128`. Relaxed SIMD is not used, because
+//! its results may differ between machines. Operations on values are safe functions here.
 
 use core::arch::wasm32::*;
 
@@ -193,7 +193,8 @@ impl Simd for Simd128 {
     #[inline(always)]
     unsafe fn compress(self, p: *mut u32, m: v128, x: v128) -> usize {
         let bits = self.mask_bits(m);
-        // SAFETY: four bits select a permutation in the table, which is sixteen bytes; the caller's contract.
+        // SAFETY: four bits select one of the table's permutations, which are sixteen bytes each; and the caller's
+        // contract.
         unsafe {
             let order = v128_load(FOUR_LANES.as_ptr().add(bits as usize).cast());
             v128_store(p.cast(), i8x16_swizzle(x, order));
@@ -319,8 +320,9 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     fn ones_shl(self, count: v128) -> v128 {
-        // A shift takes one count for all lanes. Instead, byte `k` of a lane is looked up as 0xff shifted left by the count
-        // minus `8 * k`, which is 0 from 8 on: both in the table and, by the rules of swizzle, beyond its end.
+        // All lanes of a shift have the same count. Instead, byte `k` of a lane is looked up as 0xff shifted left by
+        // the count minus `8 * k`, which is 0 from 8 on: both in the table and, by the definition of swizzle, beyond
+        // its end.
         let table = u8x16(0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0);
         let count = i32x4_min(count, i32x4_splat(255));
         let count = i8x16_shuffle::<0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12>(count, count);

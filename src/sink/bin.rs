@@ -1,7 +1,8 @@
-//! Bins triangles for the pool: they are projected once and drawn later, bin by bin, by whichever thread has the bin.
+//! Bins triangles for the pool: they are projected once and drawn later, bin by bin, by whichever thread takes the bin.
 //!
-//! All survivors are stored in order, in vectors, and with each vector, for each bin, which of its triangles may reach it.
-//! Survivors of several meshes share the vectors of set-up, which a mesh of a dozen triangles drawn by itself does not fill.
+//! All survivors are stored in order, as vectors, and each vector comes with a mask per bin of the triangles that may
+//! reach that bin. Survivors of several meshes share set-up vectors, which a mesh of a dozen triangles drawn by itself
+//! would not fill.
 
 use super::{Memory, TriangleSink};
 use crate::CullingResult;
@@ -12,14 +13,14 @@ use crate::raster::{HizScope, Setup, hiz_test};
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
-/// The bins of a screen, in columns and rows: from and to of each, in 1/256 pixel.
+/// The bins of a screen, by column and row: start and end of each, in 1/256 pixel.
 pub(crate) struct BinBounds {
     columns: Vec<[f32; 2]>,
     rows: Vec<[f32; 2]>,
 }
 
 impl BinBounds {
-    /// Columns and rows, in tiles, begin and end at these.
+    /// Columns and rows start and end at these tiles.
     pub fn new(columns: &[u32], rows: &[u32]) -> Self {
         let spans = |ends: &[u32], size: u32| -> Vec<[f32; 2]> {
             ends.windows(2).map(|pair| [pair[0], pair[1]].map(|tiles| (256 * tiles * size) as f32)).collect()
@@ -32,28 +33,28 @@ impl BinBounds {
     }
 }
 
-/// Projected triangles, in order, and which bins each may reach.
+/// Projected triangles, in order, and the bins that each may reach.
 #[derive(Default)]
 pub(crate) struct BinnedTriangles {
     blocks: Vec<Block>,
-    /// Blocks in use; the others are kept for reuse.
+    /// Number of blocks in use; the others are kept for reuse.
     used: usize,
 }
 
-/// Vectors of a block: none is shorter than eight lanes.
+/// Vectors per block: a vector has at least eight lanes.
 pub(crate) const VECTORS: usize = CAPACITY / 8;
 
-/// A vector's loads touch one cache line each, or two.
+/// Aligned so that a vector's loads touch one or two cache lines each.
 #[repr(align(64))]
 struct Corners([f32; 9 * CAPACITY]);
 
-/// Triangles that are all drawn from both sides, or all from one.
+/// Triangles that are either all two-sided or all one-sided.
 pub(crate) struct Block {
-    /// Vector by vector, x, y and 1/w of the three corners: one stream, of which a bin skips parts.
+    /// Vector by vector, x, y and 1/w of the three corners: one stream, in which a bin skips parts.
     corners: Box<Corners>,
     pub both_sides: bool,
     pub vectors: usize,
-    /// For each bin, for each vector, the triangles that may reach it.
+    /// For each bin and each vector, the triangles that may reach the bin.
     reach: Vec<u16>,
 }
 
@@ -84,7 +85,7 @@ impl BinnedTriangles {
         &self.blocks[..self.used]
     }
 
-    /// Removes the triangles and keeps the memory.
+    /// Removes the triangles but keeps the memory.
     pub fn clear(&mut self) {
         self.used = 0;
     }
@@ -117,7 +118,7 @@ pub(crate) struct Bin<'a> {
     binned: &'a mut BinnedTriangles,
     bounds: &'a BinBounds,
     buffer: &'a Buffer,
-    /// Leave out what the buffer hides already, while other threads may be drawing into it.
+    /// Leave out triangles that the buffer already hides, while other threads may be drawing into it.
     prefilter: bool,
 }
 
@@ -152,7 +153,7 @@ impl TriangleSink for Bin<'_> {
         let mut open = active;
         if self.prefilter {
             let bounds = ScreenBounds::new::<Exact>(s, buffer.size(), &corners);
-            // SAFETY: whoever draws meanwhile stores `z_min` word by word.
+            // SAFETY: threads that are drawing meanwhile store `z_min` word by word.
             let hidden = unsafe { hiz_test::hidden::<S, Exact, true>(s, buffer, setup.scope, &bounds) };
             open = s.and_not_m(hidden, s.and_m(active, bounds.inside));
         }
@@ -160,7 +161,7 @@ impl TriangleSink for Bin<'_> {
         if bits == 0 {
             return true;
         }
-        // All lanes are stored: a bin takes some of them only, anyway.
+        // All lanes are stored; a bin only reads those in its mask.
         let block = self.binned.open(setup.both_sides, self.bounds.len(), S::LANES);
         let k = block.vectors;
         block.vectors += 1;

@@ -23,7 +23,7 @@ impl<'a> Draw<'a> {
         Self { region }
     }
 
-    /// Updates the tiles of triangles. If `COUNT`: how many, and in how many the reference depth rose.
+    /// Updates the tiles of triangles. If `COUNT`, counts them and those in which the reference depth rose.
     #[inline(always)]
     fn update<T: Simd, const COUNT: bool>(
         &mut self,
@@ -33,7 +33,7 @@ impl<'a> Draw<'a> {
     ) -> (u64, u64) {
         let (buffer, clip) = (self.region.buffer(), self.region.tiles());
         let input = Input { buffer, clip, batch: &memory.batch, alive, lists: &mut memory.own };
-        // Outlined: what comes before does not depend on the rule, and is compiled once for all rules.
+        // Outlined: the code before it does not depend on the rule and is compiled only once.
         let (counts, tiles) = with_rule!(buffer.rule(), R => {
             t.outlined(UpdateTiles { input, op: Update::<R, COUNT>::new(buffer) })
         });
@@ -68,7 +68,7 @@ impl TriangleSink for Draw<'_> {
         }
         if counts {
             let (batch, clip): (&Batch, _) = (&memory.batch, self.region.tiles());
-            // Each bin of a screen is given the same triangles, which count once; a list has its own.
+            // Each bin of a screen gets the same triangles, which must count once; a list has its own.
             tally.rasterized += if self.region.has_coarse_level() {
                 begun_in(batch, alive.rasterized, clip)
             } else {
@@ -112,9 +112,9 @@ struct Update<'a, R, const COUNT: bool> {
     updated: u64,
     merged: u64,
     tiles: usize,
-    /// What the next tiles add to both.
+    /// The increments for both counters.
     counts: u32,
-    /// The screen's edge crosses sub-tiles somewhere.
+    /// The screen's edge crosses some sub-tiles.
     has_edge_masks: bool,
     rule: PhantomData<R>,
 }
@@ -133,7 +133,8 @@ impl<'a, R, const COUNT: bool> Update<'a, R, COUNT> {
         }
     }
 
-    /// Tiles that were updated, and in which the reference depth rose; and how many were processed, of a vector's height.
+    /// Tiles that were updated, and those in which the reference depth rose; and how many were processed, of a vector's
+    /// height.
     #[inline(always)]
     fn done(&self) -> ((u64, u64), usize) {
         ((self.updated, self.merged), self.tiles)
@@ -161,7 +162,8 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileOp<T> for Update<'_, R, COUNT> {
             t.store_z_min(at.z_min, at.pitch, planes.z0);
             inserted
         };
-        // Four counts in the bytes of a word: for each of two tiles, whether any lane was updated, and whether any merged.
+        // Four counts in the bytes of a word: for each of two tiles, whether any lane was updated, and whether any was
+        // merged.
         if COUNT {
             let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
             self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;

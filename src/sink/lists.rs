@@ -14,12 +14,12 @@ pub(crate) struct AppendToLists<'b, 'c> {
     lists: &'b mut [TriList<'c>],
     bin_size: (u32, u32),
     bins: (u32, u32),
-    /// Some list had no room.
+    /// Some list was full.
     pub full: bool,
 }
 
 impl<'b, 'c> AppendToLists<'b, 'c> {
-    /// `bins.0` by `bins.1` lists, row by row, of bins of `bin_size` pixels.
+    /// `bins.0` by `bins.1` lists, row by row, for bins of `bin_size` pixels.
     pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32)) -> Self {
         assert_eq!(lists.len() as u64, u64::from(bins.0) * u64::from(bins.1));
         Self { lists, bin_size, bins, full: false }
@@ -52,7 +52,7 @@ impl TriangleSink for AppendToLists<'_, '_> {
             // SAFETY: `orient` stores the corners.
             let triangle = batch.corners.each_ref().map(|x| unsafe { x.get(lane) });
             let [x0, x1, y0, y1] = batch.tiles(lane);
-            // The last column and row of bins reach to the screen's edge.
+            // The last column and row of bins extend to the screen's edge.
             let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
             let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
             for y in row(y0)..=row(y1) {

@@ -1,4 +1,4 @@
-//! Where triangles go: into the buffer (draw), against it (mesh query), into lists or into the pool's bins.
+//! Triangle sinks: draw into the buffer, query it, or store triangles in lists or the pool's bins.
 
 pub(crate) mod bin;
 pub(crate) mod draw;
@@ -19,16 +19,16 @@ use crate::raster::{Batch, HizScope, Setup, bits};
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
-/// What takes triangles, a vector at a time, in order.
+/// Receives triangles, a vector at a time, in order.
 pub(crate) trait TriangleSink {
     type Coverage: Coverage;
-    /// Memory that it needs on the stack of a call; not initialised.
+    /// Scratch memory on the stack of a call, uninitialised.
     type Memory;
 
-    /// What of the hierarchy may be read before triangles are submitted.
+    /// The part of the HiZ that may be read before triangles are submitted.
     fn scope(&self) -> HizScope;
 
-    /// Takes the triangles in `active`. False: no more are needed.
+    /// Processes the triangles in `active`. Returns false if no more are needed.
     fn submit<S: Simd>(
         &mut self,
         setup: Setup<'_, S>,
@@ -38,12 +38,12 @@ pub(crate) trait TriangleSink {
         tally: &mut Tally,
     ) -> bool;
 
-    /// The answer of the call. `in_view`: some triangle faces the eye and overlaps the screen; `stopped`: not all triangles
-    /// were submitted, because the sink needed no more or because one cannot be projected.
+    /// The answer of the call. `in_view`: some triangle is front-facing and overlaps the screen; `stopped`: not all
+    /// triangles were submitted, because the sink needed no more or because one cannot be projected.
     fn result(&self, in_view: bool, stopped: bool) -> CullingResult;
 }
 
-/// Memory of a call, not initialised.
+/// Scratch memory of a call, uninitialised.
 pub(crate) struct Memory<M> {
     pub batch: Batch,
     pub own: MaybeUninit<M>,
@@ -56,7 +56,8 @@ impl<M> Memory<M> {
     }
 }
 
-/// How many of the triangles in `lanes` have the first tile of their bounds in a rectangle: each counts in one bin only.
+/// How many of the triangles in `lanes` have the first tile of their bounds in a rectangle, so that each counts in one
+/// bin only.
 fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
     let begun = |&lane: &usize| {
         let [x0, _, y0, _] = batch.tiles(lane);
@@ -65,7 +66,7 @@ fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
     bits(lanes).filter(begun).count() as u64
 }
 
-/// How many tiles the bounds of the triangles in `lanes` have inside a rectangle.
+/// How many tiles within a rectangle the bounds of the triangles in `lanes` have.
 fn tiles_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
     let mut tiles = 0;
     for lane in bits(lanes) {

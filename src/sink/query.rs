@@ -15,7 +15,8 @@ use crate::statistics::Tally;
 /// Compares triangles with a buffer until one may be visible.
 pub(crate) struct Query<'a> {
     buffer: &'a Buffer,
-    /// Some triangle touched a pixel, or was hidden before its edges were set up, which says that it is on the screen.
+    /// Some triangle touched a pixel, or was hidden before its edges were set up, which implies that it is on the
+    /// screen.
     found: bool,
 }
 
@@ -57,12 +58,12 @@ impl TriangleSink for Query<'_> {
         });
         self.found |= touches || alive.rasterized != alive.lanes;
         if !self.found && stopped.is_none() {
-            // Hidden tile by tile, or it touches no pixel: the first touched pixel tells. Which tiles are compared together
-            // depends on the instruction set, so that being hidden does not.
+            // Either hidden tile by tile or touching no pixel: the first touched pixel decides. Which tiles are
+            // compared together depends on the instruction set, so being hidden there must not decide it.
             let input = Input { buffer, clip, batch, alive, lists };
             self.found = t.outlined(TouchTiles { input });
         }
-        // Triangles after the first that may be visible do not count, however many a vector holds.
+        // Triangles after the first one that may be visible do not count, however many a vector holds.
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
         if buffer.statistics() {
@@ -83,7 +84,7 @@ impl TriangleSink for Query<'_> {
     }
 }
 
-/// Triangles that are compared: the lane at which one may be visible, and whether any pixel was touched.
+/// Compares triangles: gives the lane at which one may be visible, and whether any pixel was touched.
 struct CompareTiles<'a, O> {
     input: Input<'a>,
     op: O,
@@ -99,7 +100,7 @@ impl<T: Simd, R: Rule> Outlined<T> for CompareTiles<'_, Compare<'_, R>> {
     }
 }
 
-/// Do triangles touch a pixel?
+/// Does any triangle touch a pixel?
 struct TouchTiles<'a> {
     input: Input<'a>,
 }
@@ -143,7 +144,7 @@ fn nothing<T: Simd>(t: T, covered: T::I) -> bool {
     t.all(t.eq_i(covered, t.i(0)))
 }
 
-/// Stops at the first tile where something may be visible.
+/// Stops at the first tile in which something may be visible.
 struct Compare<'a, R> {
     buffer: &'a Buffer,
     /// Some pixel was touched.

@@ -1,4 +1,4 @@
-//! Triangles that the pool binned, back into the stream: those that may reach a bin.
+//! Feeds the triangles that the pool binned back into the stream: those that may reach a given bin.
 
 use super::{Drain, Stream, TriangleSource};
 use crate::raster::queue::CAPACITY;
@@ -8,7 +8,7 @@ use crate::sink::{BinnedTriangles, TriangleSink};
 /// The triangles of several calls that may reach a bin, in order.
 pub(crate) struct Binned<I> {
     pub triangles: I,
-    /// The bin's number among those for which the triangles were binned.
+    /// The bin's index among those for which the triangles were binned.
     pub bin: usize,
 }
 
@@ -17,7 +17,7 @@ impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
     fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool {
         for block in self.triangles.flat_map(BinnedTriangles::blocks) {
             if block.both_sides != stream.both_sides() {
-                // Sinks of binned triangles take all of them.
+                // Sinks of binned triangles accept all of them.
                 stream.submit(Drain::Everything);
                 stream.set_both_sides(block.both_sides);
             }
@@ -26,10 +26,10 @@ impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
                     continue;
                 }
                 let from = block.vector(k, S::LANES).as_ptr();
-                // SAFETY: a vector of triangles is nine vectors of numbers.
+                // SAFETY: a vector of triangles is nine vectors of floats.
                 let load = |n: usize| unsafe { s.load_f(from.add(n * S::LANES)) };
                 let corners = [[load(0), load(1), load(2)], [load(3), load(4), load(5)], [load(6), load(7), load(8)]];
-                // SAFETY: below a vector less than the capacity there is room.
+                // SAFETY: there is room, because the queue holds at most its capacity less a vector.
                 unsafe { stream.queue.append(s, lanes_of(s, u32::from(reach)), &corners) };
                 if stream.queue.len() > CAPACITY - MAX_LANES {
                     stream.submit(Drain::FullVectors);

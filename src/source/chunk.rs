@@ -1,18 +1,20 @@
-//! Chunks: as many triangles as have their vertices in the scratch at a time, each vertex projected once.
+//! Chunks: as many triangles as the scratch holds vertices for, with each vertex projected once.
 //!
-//! Most meshes index vertices that lie close together, and all from the least to the largest of a chunk are projected. Where
-//! they lie in several places (two rows of a wide grid, say), only the indexed pages of sixteen are. Where they are scattered more
-//! widely than that, corners are projected one triangle at a time.
+//! Most meshes index vertices that lie close together, and every vertex between the least and the largest index of a
+//! chunk is projected. If they lie in several places (two rows of a wide grid, say), only the pages of sixteen vertices
+//! that contain an index are. If they are scattered more widely than that, corners are projected one triangle at a
+//! time.
 //!
-//! A large mesh is read once per frame, so it is seldom in a near cache, and in bursts: a chunk's indices, its vertices, then
-//! nothing until the next chunk. So what the next chunk will read is prefetched while a chunk's triangles are processed.
+//! A large mesh is read once per frame, so it is seldom in the inner caches, and it is read in bursts: a chunk's
+//! indices, its vertices, then nothing until the next chunk. The data of the next chunk is therefore prefetched while a
+//! chunk's triangles are processed.
 
 use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, Scratch};
 use super::vertex_reader::VertexReader;
 use crate::geometry::Camera;
 use crate::simd::{Job, MAX_LANES, Simd};
 
-/// The least and the largest of some indices, of which there is at least one.
+/// The least and the largest of a non-empty set of indices.
 pub(crate) struct IndexRange<'a>(pub &'a [u32]);
 
 impl Job for IndexRange<'_> {
@@ -24,7 +26,8 @@ impl Job for IndexRange<'_> {
     }
 }
 
-/// The least and the largest; with `vertices`, a cache line from that address on is asked for with each vector of indices.
+/// The least and the largest; with `vertices`, one cache line from that address on is prefetched with each vector of
+/// indices.
 #[inline(always)]
 fn index_range<S: Simd>(s: S, indices: &[u32], vertices: Option<*const u8>) -> (u32, u32) {
     // The least is the complement of the largest complement.
@@ -32,7 +35,7 @@ fn index_range<S: Simd>(s: S, indices: &[u32], vertices: Option<*const u8>) -> (
     let mut done = 0;
     while done < indices.len() {
         let left = indices.len() - done;
-        // SAFETY: no more is read than is left.
+        // SAFETY: no more is read than remains.
         let index = unsafe {
             let p = indices.as_ptr().add(done);
             if left >= S::LANES { s.load_i(p) } else { s.load_filled(p, left, *p) }
@@ -47,12 +50,12 @@ fn index_range<S: Simd>(s: S, indices: &[u32], vertices: Option<*const u8>) -> (
     (!s.largest_u(low), s.largest_u(high))
 }
 
-/// How the corners of a chunk's triangles name vertices in the scratch.
+/// How the corners of a chunk's triangles refer to vertices in the scratch.
 #[derive(Clone, Copy)]
 pub(super) enum Numbering {
-    /// As the mesh does, and vertex `base` is the first.
+    /// By the mesh's indices; vertex `base` is the first.
     From(u32),
-    /// By the scratch's local numbers, from triangle `first` of the mesh on.
+    /// By the scratch's local numbers, starting with triangle `first` of the mesh.
     Local { first: usize },
 }
 
@@ -62,16 +65,16 @@ pub(super) struct Chunk {
     /// The first triangle after it.
     pub end: usize,
     pub numbering: Numbering,
-    /// Where the next chunk's vertices are if they follow this one's, as most do, and how many cache lines of them to
-    /// ask for with each vector of triangles.
+    /// Where the next chunk's vertices are if they follow this one's, as they usually do, and how many of their cache
+    /// lines to prefetch with each vector of triangles.
     next_vertices: *const u8,
     lines: usize,
 }
 
 const LINE: usize = 64;
 
-/// Cache lines of so many vertices, for each of so many vectors of triangles. Of vertices farther apart than a line none: most of
-/// the lines would not be read, and there might be no end of them.
+/// Cache lines of this many vertices for each of this many vectors of triangles. None if the vertices are more than a
+/// line apart: most of the lines would not be read, and there could be very many.
 #[inline(always)]
 fn lines(vertices: usize, stride: usize, vectors: usize) -> usize {
     if stride > LINE { 0 } else { (vertices * stride).div_ceil(LINE).div_ceil(vectors) }
@@ -80,7 +83,8 @@ fn lines(vertices: usize, stride: usize, vectors: usize) -> usize {
 impl Chunk {
     pub const NONE: Self = Self { end: 0, numbering: Numbering::From(0), next_vertices: core::ptr::null(), lines: 0 };
 
-    /// Asks for what the next chunk will read, a part with each vector of triangles, of which `position` is the first.
+    /// Prefetches a part of the next chunk's data with each vector of triangles; `position` is the first triangle of
+    /// the vector.
     #[inline(always)]
     pub fn prefetch_next<S: Simd>(&mut self, s: S, indices: &[u32], position: usize) {
         if self.end == indices.len() / 3 {
@@ -112,10 +116,10 @@ pub(super) unsafe fn project<S: Simd>(
 ) -> Chunk {
     let mut count = (indices.len() / 3 - position).min(CHUNK_TRIANGLES);
     let mut chunk = &indices[3 * position..3 * (position + count)];
-    // The first chunk's vertices begin near the first index, as most do.
+    // The first chunk's vertices usually begin near the first index.
     let vertices = (position == 0).then(|| reader.at(chunk[0]));
     let (mut least, mut largest) = index_range(s, chunk, vertices);
-    // Dense enough that most of those between are not for nothing.
+    // Dense enough that projecting the unused vertices in between pays off.
     let dense = |least: u32, largest: u32, count: usize| ((largest - least) as usize) < 3 * count + MAX_LANES;
     if dense(least, largest, count) && (largest - least) as usize >= CHUNK_VERTICES {
         // Triangles that share few vertices.
@@ -125,7 +129,7 @@ pub(super) unsafe fn project<S: Simd>(
     }
     if ((largest - least) as usize) < CHUNK_VERTICES && dense(least, largest, count) {
         let vertices = (largest - least) as usize + 1;
-        // SAFETY: the caller's contract for the first and last of them; those between lie between in memory.
+        // SAFETY: the caller's contract covers the first and the last; the others lie between them in memory.
         unsafe { reader.dense(camera, least, vertices, scratch) };
         let (stride, numbering) = (reader.stride(), Numbering::From(least));
         let next_vertices = reader.at(largest).wrapping_add(stride);
@@ -156,7 +160,7 @@ mod tests {
         BackfaceWinding, CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, Settings, VertexLayout,
     };
 
-    /// In clip space, with the default options.
+    /// A mesh in clip space, with the default options.
     ///
     /// # Safety
     /// As [`Mesh::new`].
@@ -179,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_last_of_all_indices_has_no_successor() {
-        // One vertex for every index, and triangles enough for several chunks.
+        // One vertex for every index, and enough triangles for several chunks.
         let vertex = [0.0_f32, 0.0, 0.0, 1.0];
         let triangles = [u32::MAX; 3 * 2000];
         let layout = VertexLayout::new(0, 4, 12);
@@ -207,8 +211,8 @@ mod tests {
         }
     }
 
-    /// A mesh may start at any index, so its base may lie that far before the data read: further than 32-bit pointers can
-    /// count.
+    /// A mesh may start at any index, so its base may lie that far before the data read: farther than a 32-bit pointer
+    /// can express.
     #[test]
     fn a_base_far_before_the_first_vertex_changes_nothing() {
         let (width, height) = (200, 120);
@@ -219,7 +223,7 @@ mod tests {
             (VertexLayout::new(20, 8, 16), 5),
             (VertexLayout::new(20, 8, -4), 5),
         ] {
-            // The first float is room for the negative offset.
+            // The first float leaves room for the negative offset.
             let mut data = vec![0.0_f32];
             let mut indices = Vec::new();
             for k in 0..grid * grid {
@@ -237,7 +241,7 @@ mod tests {
                     indices.extend([k, k + 1, k + grid + 1, k, k + grid + 1, k + grid]);
                 }
             }
-            // The whole mesh, and scattered triangles too few for a vector.
+            // The whole mesh, and scattered triangles, too few for a vector.
             let strewn: Vec<u32> = indices.chunks(3).step_by(211).flatten().copied().collect();
             let few: Vec<u32> = indices[..9].to_vec();
             for (triangles, &implementation) in [&indices, &strewn, &few]

@@ -1,4 +1,4 @@
-//! Indices to survivors: most triangles end here, a vector of them (a packet) at a time.
+//! Culls packets, which are vectors of triangles given by their indices; most triangles end here.
 
 use core::mem::MaybeUninit;
 
@@ -8,24 +8,24 @@ use crate::geometry::project::{bit_where, outcode};
 use crate::geometry::{Camera, Corner, Coverage, Facing};
 use crate::simd::{MAX_LANES, Simd};
 
-/// Farther than this outside the screen, in 1/256 pixel, a snapped vertex is outside for certain.
+/// A snapped vertex farther outside the screen than this, in 1/256 pixel, is certainly outside.
 const CLEARLY: f32 = 2.0;
-/// Relative error of a doubled area in f32, with room: eight roundings.
+/// Relative error of a doubled area in f32, with slack: eight roundings.
 const AREA_ERROR: f32 = 8.0 / (1 << 24) as f32;
 
-/// A vector of triangles: their corners on the screen, in the order that set-up wants if they face the eye.
+/// A vector of triangles: their corners on the screen, in set-up's order if they are front-facing.
 pub(super) struct Packet<S: Simd> {
     active: S::M,
     pub corners: [Corner<S>; 3],
 }
 
-/// What culling leaves of a packet.
+/// The part of a packet that survives culling.
 pub(super) struct CullResult<S: Simd> {
-    /// Some triangle faces the eye and overlaps the screen.
+    /// Some triangle is front-facing and overlaps the screen.
     pub in_view: bool,
     /// Regular triangles to set up.
     pub kept: S::M,
-    /// Triangles to clip, a bit per lane.
+    /// Triangles that need clipping, a bit per lane.
     pub irregular: u32,
 }
 
@@ -46,7 +46,7 @@ impl<S: Simd> Packet<S> {
         let (vertices, packet) = match numbering {
             Numbering::From(base) => (scratch.vertex_zero(base), &indices[3 * position..3 * (position + count)]),
             Numbering::Local { first } => {
-                // SAFETY: the corners of a chunk that is numbered so were written.
+                // SAFETY: the corners of a chunk with local numbering were written.
                 let local = unsafe { scratch.local(3 * (position - first + count)) };
                 (scratch.vertex_zero(0), &local[3 * (position - first)..])
             }
@@ -54,11 +54,11 @@ impl<S: Simd> Packet<S> {
         let indices = if count == S::LANES {
             packet.as_ptr()
         } else {
-            // Lanes beyond the last do not count, but what they name has to be in the scratch.
+            // Lanes after the last triangle do not count, but their indices must be in the scratch.
             for k in 0..3 {
                 let at = k * S::LANES;
                 let n = packet.len().saturating_sub(at);
-                // SAFETY: no more is read than is there; the array holds three vectors.
+                // SAFETY: no more is read than exists; the array holds three vectors.
                 unsafe {
                     let index = s.load_filled(packet.as_ptr().wrapping_add(at), n, packet[0]);
                     s.store_i(padded.as_mut_ptr().cast::<u32>().add(at), index);
@@ -67,7 +67,7 @@ impl<S: Simd> Packet<S> {
             padded.as_ptr().cast()
         };
         let (second, third) = if facing.swap { (2, 1) } else { (1, 2) };
-        // SAFETY: the caller's contract: numbers of projected vertices, three a lane.
+        // SAFETY: the caller's contract: indices of projected vertices, three per lane.
         let corners = unsafe {
             [
                 s.load_records(vertices, indices),
@@ -104,7 +104,7 @@ impl<S: Simd> Packet<S> {
         kept = s.and_m(kept, s.and_m(s.lt(begin, max_y), s.lt(min_y, end(camera.half_height))));
 
         if !facing.both {
-            // Twice the area in f32: set-up decides what is unclear.
+            // Twice the area in f32; uncertain cases are left to set-up.
             let (dx1, dy1, dx2, dy2) = (s.sub(x1, x0), s.sub(y1, y0), s.sub(x2, x0), s.sub(y2, y0));
             let (p, q) = (s.mul(dx1, dy2), s.mul(dx2, dy1));
             let mut error = s.mul(s.add(s.abs(p), s.abs(q)), s.f(AREA_ERROR));
@@ -123,7 +123,7 @@ impl<S: Simd> Packet<S> {
         CullResult { in_view, kept, irregular }
     }
 
-    /// Triangles with all corners outside one plane.
+    /// Triangles with all corners outside the same plane.
     #[inline(always)]
     fn outside(&self, s: S, keep_near: bool, camera: &Camera) -> u32 {
         let planes = outcode::ALL & if keep_near { !outcode::NEAR } else { !0 };
@@ -132,7 +132,7 @@ impl<S: Simd> Packet<S> {
         !s.mask_bits(s.eq_i(shared, s.i(0)))
     }
 
-    /// Outcodes of corner `k`: as marked, or else by its place on the screen.
+    /// Outcodes of corner `k`: from its marks if it has any, else from its position on the screen.
     #[inline(always)]
     fn code(&self, s: S, camera: &Camera, k: usize) -> S::I {
         let (low_row, high_row) =
@@ -150,7 +150,7 @@ impl<S: Simd> Packet<S> {
     }
 }
 
-/// Does a pixel's centre, of `size` pixels, lie from `min` to before `max`?
+/// Does the half-open range from `min` to `max` contain the centre of one of an axis's `size` pixels?
 #[inline(always)]
 fn holds_centre<S: Simd>(s: S, min: S::F, max: S::F, size: u32) -> S::M {
     let first = s.sra::<8>(s.add_i(s.round(min), s.i(127)));
@@ -174,7 +174,7 @@ mod tests {
     struct Cull<'a, C>(&'a Corners, Facing, core::marker::PhantomData<C>);
 
     impl<C: Coverage> Job for Cull<'_, C> {
-        /// For each triangle, whether it is kept; and whether any is in view.
+        /// Whether each triangle survives, and whether any is in view.
         type Output = ([bool; MAX_LANES], bool);
 
         #[inline(always)]
@@ -183,7 +183,7 @@ mod tests {
             let mut memory = Scratch::uninit();
             let scratch = Scratch::of(&mut memory);
             for (k, [x, y]) in self.0.as_flattened().iter().enumerate() {
-                // SAFETY: the scratch has room for more vertices.
+                // SAFETY: the scratch has room for more vertices than this.
                 unsafe { scratch.vertex(k).cast::<[f32; 4]>().write([*x, *y, 1.0, 0.0]) };
             }
             let indices: [u32; 3 * MAX_LANES] = core::array::from_fn(|k| k as u32);
@@ -207,7 +207,7 @@ mod tests {
         (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
     }
 
-    /// Does the bounding box hold the centre of a pixel on the screen?
+    /// Do the bounds contain the centre of a pixel on the screen?
     fn holds_a_centre(t: [[f32; 2]; 3]) -> bool {
         [SIZE.0, SIZE.1].into_iter().enumerate().all(|(axis, size)| {
             let v = t.map(|v| v[axis] as i64);
@@ -238,7 +238,7 @@ mod tests {
                         let faces = facing.both || area > 0;
                         let expected = faces && holds_a_centre(t);
                         assert!(exact[k] || !expected, "{level:?} {winding:?} {t:?} is culled");
-                        // In f32 only slivers are unclear.
+                        // In f32 only slivers are uncertain.
                         let clearly_away = !facing.both && area < -1_000;
                         assert!(
                             !exact[k] || (holds_a_centre(t) && !clearly_away),

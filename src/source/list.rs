@@ -1,4 +1,4 @@
-//! Triangle lists: projected already, but in memory that the caller could write to.
+//! Triangle lists: already projected, but in memory that the caller can write to.
 
 use core::ops::Range;
 
@@ -31,12 +31,12 @@ impl TriangleSource for &TriList<'_> {
     }
 }
 
-/// Queues triangles of a list, without those that binning cannot have produced.
+/// Queues the triangles of a list, skipping those that binning cannot have produced.
 fn fetch(list: &TriList<'_>, range: Range<usize>, queue: &mut TriangleQueue, tally: &mut Tally) {
     let limit = Exact::GUARD_BAND + (1 << 22) as f32;
     let sound = |&[x, y, z]: &[f32; 3]| {
         let whole = |x: f32| x.abs() <= limit && f64::from(x) == round_ties_even(f64::from(x));
-        // Just outside of the range of 1/w, for clipping rounds.
+        // Slightly wider than the range of 1/w, because clipping rounds.
         whole(x) && whole(y) && (0.5 / FARTHEST_W..=2.0 / NEAREST_W).contains(&z)
     };
     for triangle in range {

@@ -1,5 +1,5 @@
-//! Indexed meshes: chunks of vertices are projected, their triangles culled a vector at a time, and the few that have to be
-//! clipped are clipped.
+//! Indexed meshes: vertices are projected in chunks, their triangles culled a vector at a time, and the few that need
+//! clipping are clipped.
 
 use super::chunk::{self, Chunk};
 use super::cull::Packet;
@@ -14,10 +14,10 @@ use crate::simd::{MAX_LANES, Simd};
 use crate::sink::TriangleSink;
 use crate::vertices::VertexSource;
 
-/// With more triangles queued than this there may be no room for those of another packet.
+/// If more triangles than this are queued, there may be no room for another packet's.
 const FULL: usize = CAPACITY - MAX_LANES * clip::MAX_TRIANGLES;
 
-/// The triangles of a call, three indices each, whose vertices can be read.
+/// The triangles of a call, three indices each; their vertices can be read.
 #[derive(Clone, Copy)]
 pub(crate) struct Mesh<'a> {
     vertices: VertexSource,
@@ -57,7 +57,7 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// The triangles of a mesh, as a camera sees them.
+/// The triangles of a mesh, seen through a camera.
 pub(crate) struct MeshTriangles<'a> {
     mesh: &'a Mesh<'a>,
     camera: &'a Camera,
@@ -96,7 +96,7 @@ impl TriangleSource for MeshTriangles<'_> {
             }
             chunk.prefetch_next(s, mesh.triangles, position);
             let count = S::LANES.min(chunk.end - position);
-            // SAFETY: `count` triangles from `position` on are in the mesh and in the scratch.
+            // SAFETY: `count` triangles from `position` on are in the mesh, and their vertices are in the scratch.
             let packet = unsafe { Packet::new(s, mesh.triangles, position, count, chunk.numbering, facing, scratch) };
             let culled = packet.cull::<K::Coverage>(s, screen, camera, facing);
             stream.in_view |= culled.in_view;
@@ -149,7 +149,7 @@ impl TriangleSource for MeshTriangles<'_> {
     }
 }
 
-/// The corners of one triangle in clip space, and on the screen as the vectors have them.
+/// The corners of one triangle in clip space, and on the screen as computed by the vector code.
 ///
 /// # Safety
 /// The vertices can be read.

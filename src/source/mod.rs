@@ -1,4 +1,4 @@
-//! What yields triangles: an indexed mesh, a list, the pool's binned triangles. One driver takes any of them to any sink.
+//! Triangle sources: an indexed mesh, a list, the pool's binned triangles. One driver feeds any of them to any sink.
 
 mod binned;
 mod chunk;
@@ -22,37 +22,39 @@ use crate::simd::Simd;
 use crate::sink::{Memory, TriangleSink};
 use crate::statistics::Tally;
 
-/// What yields triangles.
+/// A source of triangles.
 pub(crate) trait TriangleSource: Sized {
-    /// May the corners of its triangles be in either order? Sources that change their mind tell the stream.
+    /// May the corners of its triangles be in either order? Sources for which this changes tell the stream.
     #[inline(always)]
     fn both_sides(&self) -> bool {
         false
     }
 
-    /// Queues all triangles, in order, and submits them when the queue has no room. False: the sink needs no more.
+    /// Queues all triangles, in order, and submits them when the queue is full. Returns false if the sink needs no
+    /// more.
     fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool;
 }
 
-/// Whether triangles that do not fill a vector are submitted, too, or wait for more.
+/// Whether triangles that do not fill a vector are submitted too, or wait for more.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Drain {
     Everything,
     FullVectors,
 }
 
-/// The way of a call's triangles from its source to its sink.
+/// The path of a call's triangles from its source to its sink.
 pub(crate) struct Stream<'a, S: Simd, K: TriangleSink> {
     setup: Setup<'a, S>,
     pub queue: &'a mut TriangleQueue,
-    /// The only triangles of a small call, submitted before those of the queue: they need not be written and read back.
+    /// The only triangles of a small call, submitted before those of the queue; this saves a round trip through memory.
     direct: Option<([Corner<S>; 3], S::M)>,
     memory: &'a mut Memory<K::Memory>,
     sink: &'a mut K,
     pub tally: Tally,
-    /// Some triangle faces the eye and overlaps the screen.
+    /// Some triangle is front-facing and overlaps the screen.
     pub in_view: bool,
-    /// A triangle cannot be projected: those before it decide first, so that counts do not depend on the vector's width.
+    /// A triangle cannot be projected. The ones before it decide first, so that counts do not depend on the vector
+    /// width.
     pub unprojectable: bool,
 }
 
@@ -61,7 +63,7 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
         self.setup.both_sides
     }
 
-    /// The queue is empty.
+    /// The queue must be empty.
     pub fn set_both_sides(&mut self, both_sides: bool) {
         debug_assert_eq!(self.queue.len(), 0);
         self.setup.both_sides = both_sides;
@@ -73,7 +75,7 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
         self.direct = Some((corners, active));
     }
 
-    /// Submits queued triangles to the sink. False: it needs no more.
+    /// Submits queued triangles to the sink. Returns false if it needs no more.
     #[inline(always)]
     pub fn submit(&mut self, drain: Drain) -> bool {
         let s = self.setup.s;
@@ -99,7 +101,7 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
     }
 }
 
-/// The driver: takes all triangles of a source to a sink.
+/// The driver: feeds all triangles of a source to a sink.
 #[inline(always)]
 pub(crate) fn drive<S: Simd, Q: TriangleSource, K: TriangleSink>(
     s: S,

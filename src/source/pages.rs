@@ -1,28 +1,29 @@
-//! Vertices page by page: of a chunk whose indices lie in several places, the pages of sixteen vertices that it names.
+//! Projects vertices by pages: for a chunk whose indices lie in several places, only the pages of sixteen vertices that
+//! contain an index.
 //!
-//! A table says for each page where in the scratch it is; the corners of the chunk are renumbered on the way.
+//! A table gives the slot of each page in the scratch; the corners of the chunk are renumbered accordingly.
 
 use super::scratch::{CHUNK_VERTICES, NOT_LOADED, PAGES, PageTable, Scratch};
 use super::vertex_reader::VertexReader;
 use crate::geometry::{Camera, project};
 use crate::simd::{MAX_LANES, Simd};
 
-/// Vertices of a page, as many as the widest vector has lanes.
+/// Vertices per page, as many as the widest vector has lanes.
 const PAGE: usize = MAX_LANES;
 const PAGE_SHIFT: u32 = PAGE.trailing_zeros();
-/// Pages that the scratch holds; the first vertices of the scratch are room for the last page of a mesh, see below.
+/// Pages that the scratch holds; the first vertices of the scratch are reserved for the last page of a mesh, see below.
 const SLOTS: usize = CHUNK_VERTICES / PAGE;
-/// With fewer triangles a page the vertices are better projected one by one.
+/// With fewer triangles per page, projecting the vertices one by one is faster.
 const TRIANGLES_PER_PAGE: usize = 4;
 
-/// Pages that a chunk names, in the order of their slots.
+/// The pages that a chunk uses, in the order of their slots.
 struct Named {
     pages: [u16; SLOTS],
     count: usize,
 }
 
-/// Renumbers the corners of as many triangles as there is room for, from 1 up, and lists their pages, that of the
-/// largest index first. Nothing: too far apart, or too few triangles.
+/// Renumbers the corners of as many triangles as there is room for, starting at 1, and lists their pages, that of the
+/// largest index first. `None` if the indices are too far apart or the triangles too few.
 fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) -> Option<(usize, Named)> {
     let page_of = |index: u32| ((index - least) >> PAGE_SHIFT) as usize;
     if page_of(largest) >= PAGES {
@@ -44,7 +45,7 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
                 named.pages[named.count] = page_of(index) as u16;
                 named.count += 1;
             }
-            // One page of room before the first slot.
+            // One page is reserved before the first slot.
             local.write(((u32::from(*slot) + 1) << PAGE_SHIFT) + ((index - least) & (PAGE as u32 - 1)));
         }
         triangles += 1;
@@ -55,18 +56,18 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
     (triangles >= TRIANGLES_PER_PAGE * named.count).then_some((triangles, named))
 }
 
-/// How many vertices the page that begins with `first` has beyond `largest`, which is on it.
+/// How many vertices of the page that begins with `first` lie beyond `largest`, which is on it.
 fn beyond(first: u32, largest: u32) -> u32 {
-    // Not `first + PAGE`, which the largest of all indices overflow.
+    // Not `first + PAGE`, which would overflow for the largest index.
     PAGE as u32 - 1 - (largest - first)
 }
 
 impl<S: Simd> VertexReader<S> {
-    /// Projects the pages that the first triangles name, whose number it returns, and renumbers their corners; if that
-    /// pays.
+    /// If it pays, projects the pages that the first triangles use and renumbers their corners; returns the number of
+    /// these triangles.
     ///
     /// # Safety
-    /// The vertices from the least to the largest index, of which there are more than a page, can be read.
+    /// The vertices from the least to the largest index, more than a page of them, can be read.
     #[inline(always)]
     pub unsafe fn paged(
         &self,
@@ -81,13 +82,13 @@ impl<S: Simd> VertexReader<S> {
         let (triangles, named) = renumber(indices, least, largest, scratch)?;
         for slot in 0..named.count {
             let first = least + (u32::from(named.pages[slot]) << PAGE_SHIFT);
-            // The page of the largest index may reach beyond it: it is projected from further down, and what comes
-            // before it goes to the room before its slot, which is the first.
+            // The page of the largest index may extend past it. It is then projected from further down, and the surplus
+            // goes to the space reserved before its slot, which is the first.
             let early = if slot == 0 { beyond(first, largest) } else { 0 };
             let to = (slot + 1) * PAGE - early as usize;
             let mut at = 0;
             while at < PAGE {
-                // SAFETY: the caller's contract; a vertex follows every page but the first named.
+                // SAFETY: the caller's contract; every page except the first listed one is followed by another vertex.
                 unsafe {
                     let whole = slot != 0 || at + S::LANES < PAGE;
                     let v = project(self.s, camera, self.load(first - early + at as u32, whole));

@@ -1,37 +1,37 @@
-//! The projected vertices of one chunk of triangles, on the stack of a call: nothing is allocated, nothing depends on the mesh's
+//! The projected vertices of one chunk of triangles, on the stack: nothing is allocated, nothing depends on the mesh's
 //! size, and threads share nothing.
 
 use core::mem::MaybeUninit;
 
 use crate::simd::MAX_LANES;
 
-/// Vertices of a chunk.
+/// Vertices per chunk.
 pub(super) const CHUNK_VERTICES: usize = 768;
-/// Triangles of a chunk.
+/// Triangles per chunk.
 pub(super) const CHUNK_TRIANGLES: usize = 512;
 
-/// Pages of vertices between the least and the largest index of a chunk (see `pages.rs`).
+/// Pages of vertices that may lie between the least and the largest index of a chunk (see `pages.rs`).
 pub(super) const PAGES: usize = 2048;
 /// The slot of a page that is not in the scratch.
 pub(super) const NOT_LOADED: u16 = u16::MAX;
 
-/// Where each page is in the scratch. Between chunks none is.
+/// The slot of each page in the scratch. Between chunks no page is loaded.
 pub(super) struct PageTable {
     slots: [u16; PAGES],
     ready: bool,
 }
 
 impl PageTable {
-    /// Nothing but the flag has to be written before it is used.
+    /// Only the flag has to be written before use.
     #[inline(always)]
     pub fn clear(table: &mut MaybeUninit<Self>) {
-        // SAFETY: it is written, not read.
+        // SAFETY: this only writes, it does not read.
         unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
     }
 
-    /// The table, with no page in the scratch.
+    /// The table, with no page loaded.
     pub fn of(table: &mut MaybeUninit<Self>) -> &mut [u16; PAGES] {
-        // SAFETY: the flag was written by `clear`, and the slots are before they are used.
+        // SAFETY: `clear` wrote the flag, and the slots are written before they are used.
         unsafe {
             let table = table.as_mut_ptr();
             let slots = &raw mut (*table).slots;
@@ -44,12 +44,12 @@ impl PageTable {
     }
 }
 
-/// x and y of each vertex in 1/256 pixel, whole numbers, and 1/w; or, as a NaN for x, the marks of a vertex that has to
-/// be clipped. Four floats per vertex, so that a vector of corners is loaded without gathering.
+/// x and y of each vertex in 1/256 pixel, as whole numbers, and 1/w; for a vertex that needs clipping, x is a NaN that
+/// carries marks. Four floats per vertex, so that a vector of corners is loaded without a gather.
 #[repr(C, align(64))]
 pub(crate) struct Scratch {
     vertices: [MaybeUninit<[f32; 4]>; CHUNK_VERTICES + 2 * MAX_LANES],
-    /// Where the corners of the chunk's triangles are, if not in the order of the mesh.
+    /// The local numbers of the chunk's corners, unless the mesh's own order is used.
     pub local: [MaybeUninit<u32>; 3 * CHUNK_TRIANGLES],
     pub(super) table: MaybeUninit<PageTable>,
 }
@@ -60,7 +60,7 @@ impl Scratch {
         MaybeUninit::uninit()
     }
 
-    /// All of it is `MaybeUninit`, so that it may be used as it comes.
+    /// Everything in it is `MaybeUninit`, so it may be used as is.
     #[inline(always)]
     pub fn of(memory: &mut MaybeUninit<Self>) -> &mut Self {
         // SAFETY: every field is `MaybeUninit` or an array of it, which needs no initialisation.
@@ -69,13 +69,13 @@ impl Scratch {
         scratch
     }
 
-    /// The address of vertex `local`'s x, which may be any number.
+    /// The address of x of vertex `local`, which may be any number.
     #[inline(always)]
     pub fn vertex(&mut self, local: usize) -> *mut f32 {
         self.vertices.as_mut_ptr().wrapping_add(local).cast()
     }
 
-    /// The first `n` of the corners' local numbers.
+    /// The local numbers of the first `n` corners.
     ///
     /// # Safety
     /// They were written.
@@ -86,7 +86,7 @@ impl Scratch {
         unsafe { core::slice::from_raw_parts(local.as_ptr().cast(), n) }
     }
 
-    /// The address that vertex 0 of the mesh would have if vertex `base` is the first here.
+    /// The address that vertex 0 of the mesh would have if vertex `base` were the first one here.
     #[inline(always)]
     pub fn vertex_zero(&self, base: u32) -> *const f32 {
         self.vertices.as_ptr().wrapping_sub(base as usize).cast()

@@ -7,7 +7,7 @@ use crate::geometry::{Camera, project};
 use crate::simd::{MAX_LANES, Simd};
 use crate::vertices::VertexSource;
 
-/// How a call reads its vertices: layout and matrix, ready for vectors.
+/// How a call reads its vertices: layout and matrix, in vector form.
 pub(crate) struct VertexReader<S: Simd> {
     pub s: S,
     source: VertexSource,
@@ -15,12 +15,12 @@ pub(crate) struct VertexReader<S: Simd> {
     rows: Option<MatrixRows<S>>,
 }
 
-/// Layouts that vectors load without gathering, which would be a sixth of a frame's time.
+/// Layouts that load without a gather, which is measurably faster.
 #[derive(Clone, Copy, PartialEq)]
 enum Packing {
     /// x, y and z (or w), 12 bytes per vertex.
     Three,
-    /// 16 bytes per vertex, of which the third or the fourth float counts besides x and y.
+    /// 16 bytes per vertex: x, y and either the third or the fourth float.
     Four {
         third: usize,
     },
@@ -44,30 +44,30 @@ impl<S: Simd> VertexReader<S> {
         Self { s, source, packing: Packing::of(source.layout), rows: matrix.map(|m| MatrixRows::new(s, m)) }
     }
 
-    /// From vertex to vertex, in bytes.
+    /// Distance between vertices, in bytes.
     #[inline(always)]
     pub fn stride(&self) -> usize {
         self.source.layout.stride as usize
     }
 
-    /// Address of x of a vertex.
+    /// Address of a vertex's x.
     #[inline(always)]
     pub fn at(&self, index: u32) -> *const u8 {
-        // The stride is not negative. With 32-bit pointers the product may wrap around, and so may the caller's base have, if
-        // the mesh does not use its first vertices.
+        // The stride is not negative. With 32-bit pointers the product may wrap around, as may have the caller's base
+        // if the mesh does not use its first vertices.
         self.source.base.wrapping_add((index as usize).wrapping_mul(self.stride()))
     }
 
-    /// Vertices `first` to `first + LANES` in clip space. `whole`: another vertex follows them, or all of a stride
-    /// may be read of the last.
+    /// Vertices `first` to `first + LANES` in clip space. `whole`: another vertex follows them, or the whole stride of
+    /// the last one may be read.
     ///
     /// # Safety
-    /// They can be read, and what `whole` says is so.
+    /// They can be read, and `whole` is true only as described.
     #[inline(always)]
     pub unsafe fn load(&self, first: u32, whole: bool) -> [S::F; 3] {
         let (s, p, layout) = (self.s, self.at(first), self.source.layout);
         let stride = self.stride();
-        // SAFETY: the caller's contract; sixteen bytes of every vertex may be read where `whole` says so.
+        // SAFETY: the caller's contract; sixteen bytes of every vertex may be read if `whole`.
         let v = unsafe {
             match self.packing {
                 Packing::Three => {
@@ -88,7 +88,8 @@ impl<S: Simd> VertexReader<S> {
         self.to_clip(v)
     }
 
-    /// `count` packed vertices from `first` on, fewer than there are lanes, in clip space; those after them are zeros.
+    /// `count` packed vertices starting at `first`, fewer than there are lanes, in clip space; the remaining lanes are
+    /// zero.
     ///
     /// # Safety
     /// They can be read.
@@ -96,7 +97,7 @@ impl<S: Simd> VertexReader<S> {
     unsafe fn load_first(&self, first: u32, count: usize) -> [S::F; 3] {
         let (s, p) = (self.s, self.at(first).cast::<u32>());
         let mut words = [0; 4 * MAX_LANES];
-        // What is written here is read as vectors again, so that neither has to wait for single words.
+        // Written as vectors and read back as vectors, so that store forwarding works.
         let mut copy = |n: usize, vectors: usize| {
             for k in 0..vectors {
                 let at = k * S::LANES;
@@ -108,7 +109,7 @@ impl<S: Simd> VertexReader<S> {
         let v = unsafe {
             match self.packing {
                 Packing::Four { third } => {
-                    // Of the last vertex no more than its third float.
+                    // Of the last vertex, nothing after its third float is read.
                     copy(4 * count - 3 + third, 4);
                     let v = s.load_quads(words.as_ptr().cast());
                     [v[0], v[1], if third == 2 { v[2] } else { v[3] }]
@@ -122,7 +123,7 @@ impl<S: Simd> VertexReader<S> {
         self.to_clip(v)
     }
 
-    /// `N` vertices as they lie in memory, one after the other.
+    /// `N` vertices as stored in memory, consecutively.
     ///
     /// # Safety
     /// They can be read.
@@ -149,10 +150,10 @@ impl<S: Simd> VertexReader<S> {
         }
     }
 
-    /// Projects `count` vertices from `first` on into the scratch.
+    /// Projects `count` vertices starting at `first` into the scratch.
     ///
     /// # Safety
-    /// They can be read; `count` is from 1 to the chunk's size.
+    /// They can be read; `count` is at least 1 and at most the chunk's size.
     #[inline(always)]
     pub unsafe fn dense(&self, camera: &Camera, first: u32, count: usize, scratch: &mut Scratch) {
         let s = self.s;
@@ -179,7 +180,7 @@ impl<S: Simd> VertexReader<S> {
             if local >= count {
                 break;
             }
-            // The last vector ends with the last vertex and repeats some.
+            // The last vector ends with the last vertex and repeats some earlier ones.
             local = local.min(count - S::LANES);
         }
     }
@@ -187,7 +188,7 @@ impl<S: Simd> VertexReader<S> {
     /// Projects vertices one index at a time, for meshes with scattered indices.
     ///
     /// # Safety
-    /// They can be read; there are from 1 to a chunk's size of them.
+    /// They can be read; there is at least one and at most a chunk's worth.
     #[inline(always)]
     pub unsafe fn sparse(&self, camera: &Camera, indices: &[u32], scratch: &mut Scratch) {
         for (k, local) in scratch.local[..indices.len()].iter_mut().enumerate() {
@@ -203,11 +204,11 @@ impl<S: Simd> VertexReader<S> {
     }
 
     /// # Safety
-    /// The first `LANES` indices name vertices that can be read; `local` is within the chunk.
+    /// The first `LANES` indices refer to vertices that can be read; `local` is within the chunk.
     #[inline(always)]
     unsafe fn each(&self, camera: &Camera, indices: [u32; MAX_LANES], local: usize, scratch: &mut Scratch) {
         let s = self.s;
-        // SAFETY: all sixteen are read, and all name vertices; arrays of sixteen hold a vector.
+        // SAFETY: all sixteen indices are read, and all refer to vertices; arrays of sixteen hold a vector.
         unsafe {
             let v = self.load_each(indices);
             let v = [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())];

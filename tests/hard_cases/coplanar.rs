@@ -17,7 +17,7 @@ static SHEETS: Case = Case::new("100 sheets of 10,000 triangles, a unit in the l
 
 static BESIDE: Case = Case::new("queries that touch a wall, all but parallel to it", beside_a_wall);
 
-/// A grid of vertices over the whole screen, two triangles a cell.
+/// A grid of vertices over the whole screen, two triangles per cell.
 struct Grid {
     size: (usize, usize),
     vertices: Vec<[f32; 4]>,
@@ -26,7 +26,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// `w` of a vertex by its place on the screen, 0 to 1 across and down.
+    /// `w` gives a vertex's w from its position on the screen, 0 to 1 across and down.
     fn new(size: (usize, usize), cells: (usize, usize), w: impl Fn(f64, f64) -> f32) -> Self {
         let mut grid = Self { size, vertices: Vec::new(), snapped: Vec::new(), indices: Vec::new() };
         let at = |k: usize, cells: usize, size: usize| (k * size * UNIT as usize / cells) as f64 / UNIT as f64;
@@ -45,7 +45,7 @@ impl Grid {
             for column in 0..cells.0 {
                 let first = (row * (cells.0 + 1) + column) as u32;
                 let below = first + cells.0 as u32 + 1;
-                // The diagonals alternate, so that no two neighbours share all three corners' planes.
+                // The diagonals alternate, so that no two neighbours have the plane of the same three corners.
                 let halves = if (row + column) % 2 == 0 {
                     [first, first + 1, below + 1, first, below + 1, below]
                 } else {
@@ -69,7 +69,7 @@ impl Grid {
     }
 }
 
-/// w of a plane that is seen at a slant: 1/w runs evenly over the screen.
+/// w of a slanted plane: 1/w is linear on the screen.
 fn slanted(x: f64, y: f64) -> f32 {
     (1.0 / (0.01 + 0.05 * x + 0.02 * y)) as f32
 }
@@ -83,14 +83,14 @@ fn one_plane() -> Measured {
     let mut measured = Measured::default();
     measured.coverage(grid.triangles(), subject.depth(), &oracle);
     measured.depths(subject.depth(), &oracle);
-    // All of it shows: what is as near as the buffer does.
+    // All of it is visible: depth equal to the buffer's counts as visible.
     measured.shown(subject.test_mesh(&grid.vertices, &grid.indices));
     for some in grid.indices.chunks(30_000) {
         measured.shown(subject.test_mesh(&grid.vertices, some));
     }
     measured.shown(subject.test_clip(&grid.whole(1.0)));
-    // In the same slant what is farther is hidden, from twice on what the plane changes within a block of 8x4 pixels: at its
-    // far end a twentieth.
+    // At the same slant, farther surfaces are hidden once they are behind by twice the change of the plane within a
+    // block of 8x4 pixels, which is a twentieth at its far end.
     assert_eq!(subject.test_clip(&grid.whole(1.12)), CullingResult::Occluded);
     measured
 }
@@ -103,13 +103,13 @@ fn sheets() -> Measured {
     let mut subject = Subject::new(size, YAxis::Up);
     let mut oracle = Oracle::new(size.0, size.1);
     let mut measured = Measured::default();
-    // What was drawn before would hide a pixel that a sheet misses.
+    // Earlier contents would hide a pixel that a sheet misses.
     let mut alone = Subject::new(size, YAxis::Up);
     for (k, sheet) in sheets.into_iter().enumerate() {
         let mut grid = Grid::new(size, cells, |x, y| f32::from_bits(slanted(x, y).to_bits() + sheet));
-        // Rows run up here: the grid's y as it is.
+        // Rows run up here, so the grid's y is used as is.
         grid.vertices.iter_mut().for_each(|v| v[1] = -v[1]);
-        // A sheet's triangles in another order each.
+        // A sheet's triangles, in a different order for each sheet.
         let mut order: Vec<&[u32]> = grid.indices.chunks_exact(3).collect();
         random.shuffle(&mut order);
         grid.indices = order.concat();
@@ -117,11 +117,11 @@ fn sheets() -> Measured {
         grid.triangles().for_each(|t| oracle.draw(&t));
         alone.clear();
         alone.draw_mesh(&grid.vertices, &grid.indices);
-        // Every sheet has the same outline, so that what all of them cover is what one does.
+        // All sheets have the same outline, so together they cover what a single one covers.
         measured.coverage(grid.triangles(), alone.depth(), &oracle);
         if k % 10 == 9 {
             measured.depths(subject.depth(), &oracle);
-            // What shows of this sheet alone is what is as near as all that was drawn.
+            // The part of this sheet that is visible is the part that is as near as everything drawn.
             let shows = grid.triangles().zip(grid.indices.chunks_exact(3)).filter(|(t, _)| oracle.shows(t));
             shows.step_by(50).for_each(|(_, t)| measured.shown(subject.test_mesh(&grid.vertices, t)));
         }
@@ -129,8 +129,8 @@ fn sheets() -> Measured {
     measured
 }
 
-/// Large triangles that lean by some units in the last place, each before a wall as near as its nearest pixel, or one step of
-/// f32 farther: it shows there by an ulp at most, and half a pixel of its plane is far less.
+/// Large triangles that slant by some units in the last place, each in front of a wall as near as its nearest pixel, or
+/// one step of f32 farther: they are visible there by one ulp at most, and half a pixel of their plane is far less.
 fn beside_a_wall() -> Measured {
     let size = (256, 128);
     let mut subject = Subject::new(size, YAxis::Down);
@@ -165,20 +165,19 @@ fn beside_a_wall() -> Measured {
     measured
 }
 
-/// Half a pixel a triangle, all in one plane but for the rounding of w.
+/// Half a pixel per triangle, all in one plane except for the rounding of w.
 #[test]
 fn a_million_coplanar_triangles() {
     ONE_PLANE.measured().assert_exact().assert_behind(0.005, 0.0);
 }
 
-/// The same plane a hundred times, each a unit in the last place of w behind another, in any order.
+/// The same plane a hundred times, each one unit in the last place of w behind another, unsorted.
 #[test]
 fn a_million_nearly_coplanar_triangles() {
     SHEETS.measured().assert_exact().assert_behind(0.02, 0.012);
 }
 
-/// A decal on a wall: which of the two is nearer is a matter of how each of them was rounded, and both have to err to the
-/// safe side.
+/// A decal on a wall: which of the two is nearer depends on how each was rounded, and both must err on the safe side.
 #[test]
 fn queries_that_touch_a_wall() {
     let m = BESIDE.measured();

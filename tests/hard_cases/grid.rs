@@ -1,5 +1,5 @@
-//! Vertices where comparisons are decided by equality: on the screen's edges, on the corners of tiles and sub-tiles, on
-//! the guard band.
+//! Vertices at positions where comparisons are decided by equality: on the screen's edges, on the corners of tiles and
+//! sub-tiles, on the guard band.
 
 use masked_occlusion_culling::YAxis;
 
@@ -22,7 +22,7 @@ const DRAWN_BAND: i64 = (1 << 26) - (1 << 21);
 const QUERY_BAND: i64 = 1 << 22;
 const STEP: i64 = 4;
 
-/// Every triangle with its corners among the corners of tiles and sub-tiles, moved by up to `off` units each.
+/// Every triangle whose corners are corners of tiles and sub-tiles, each moved by up to `off` units.
 fn lattice(off: i64) -> Measured {
     let size = (64, 16);
     let mut points = Vec::new();
@@ -59,13 +59,13 @@ fn lattice(off: i64) -> Measured {
 
 const SIZE: (usize, usize) = (256, 64);
 
-/// A triangle with one corner on or about the screen and one or two on a band `far` units from its centre, of w 1.
+/// A triangle with one corner on or near the screen and one or two on a band `far` units from its centre, with w = 1.
 fn reaching(random: &mut fastrand::Rng, far: i64) -> Triangle {
     let (half_x, half_y) = (SIZE.0 as i64 * 128, SIZE.1 as i64 * 128);
     let near = |random: &mut fastrand::Rng| (random.i64(-64 * UNIT..320 * UNIT), random.i64(-32 * UNIT..=96 * UNIT));
     let distant = |random: &mut fastrand::Rng| {
         let side = if random.bool() { far } else { -far };
-        // Along the band's line a multiple of what f32 tells apart there.
+        // Along the band, a multiple of the f32 spacing there.
         let along = match random.u32(0..4) {
             0 => 0,
             1 => side,
@@ -81,8 +81,8 @@ fn reaching(random: &mut fastrand::Rng, far: i64) -> Triangle {
     [0, 1, 2].map(|k| Vertex { x: corners[k].0, y: corners[k].1, z: z[k] })
 }
 
-/// A triangle as wide as the guard band, of which an edge runs exactly through a pixel's centre on the screen: a tie, which
-/// the last bit of the edge's slope would decide were it rounded.
+/// A triangle as wide as the guard band with an edge exactly through a pixel's centre on the screen: a tie, which the
+/// last bit of the edge's slope would decide if it were rounded.
 fn through_a_centre(random: &mut fastrand::Rng) -> Triangle {
     let centre = |n: i64| n * UNIT + UNIT / 2;
     let (x, y) = (centre(random.i64(0..256)), centre(random.i64(0..64)));
@@ -97,7 +97,7 @@ fn through_a_centre(random: &mut fastrand::Rng) -> Triangle {
     ]
 }
 
-/// Triangles with corners `beyond` the band: still not clipped where that is nothing.
+/// Triangles with corners `beyond` the band: still unclipped if that is zero.
 fn guard_band(beyond: i64, exact: bool) -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     let oracle = Oracle::new(SIZE.0, SIZE.1);
@@ -124,7 +124,7 @@ fn guard_band(beyond: i64, exact: bool) -> Measured {
     measured
 }
 
-/// Behind a buffer of random walls: what shows at a pixel's centre is not called hidden.
+/// Against a buffer of random walls: an occludee visible at a pixel's centre is not reported hidden.
 fn queries() -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     let mut oracle = Oracle::new(SIZE.0, SIZE.1);
@@ -132,7 +132,7 @@ fn queries() -> Measured {
     let mut random = fastrand::Rng::with_seed(33);
     for k in 0..3000 {
         if k % 50 == 0 {
-            // Walls that leave a corner of the screen free, or nothing of it.
+            // Walls that leave one corner of the screen free, or nothing.
             subject.clear();
             oracle.clear();
             let wall = |x: i64, y: i64, z: f64| Vertex { x: x * UNIT, y: y * UNIT, z };
@@ -148,7 +148,7 @@ fn queries() -> Measured {
             measured.triangles += 3;
             measured.depths(subject.depth(), &oracle);
         }
-        // On this band f32 tells every unit apart.
+        // On this band f32 can represent every unit.
         let t = reaching(&mut random, QUERY_BAND + [0, 1, -1][k % 3]);
         if oracle.shows(&t) {
             let corners = t.map(|v| crate::support::clip_vertex(&v, SIZE, YAxis::Down));
@@ -164,20 +164,20 @@ fn vertices_on_corners_of_tiles_and_the_screen() {
     CORNERS.measured().assert_exact().assert_behind(6e-5, 0.0);
 }
 
-/// Every corner moved by -1, 0 or 1 unit either way: to both sides of where tiles and the screen end.
+/// Every corner moved by -1, 0 or 1 unit in x and y: to both sides of the edges of tiles and the screen.
 #[test]
 fn vertices_beside_corners_of_tiles_and_the_screen() {
     BESIDE.measured().assert_exact().assert_behind(2e-4, 0.0);
 }
 
-/// As far out as a vertex may lie and not be clipped: 253,952 pixels, where products do not fit in doubles. Half of the
-/// triangles have an edge that ties with a pixel's centre.
+/// As far out as a vertex may be without being clipped: 253,952 pixels, where products do not fit in doubles. Half of
+/// the triangles have an edge that ties with a pixel's centre.
 #[test]
 fn vertices_on_the_guard_band() {
     BAND.measured().assert_exact().assert_behind(0.0012, 0.0);
 }
 
-/// And the next that is.
+/// One step farther, where it is clipped.
 #[test]
 fn vertices_just_beyond_the_guard_band() {
     BEYOND.measured().assert_clipped().assert_behind(0.013, 1e-6);

@@ -1,4 +1,4 @@
-//! A ground plane from 1/1000 to 100,000 away: every outdoor scene has one, and most of its depth range lies in the row
+//! A ground plane from 1/1000 to 100,000 away: every outdoor scene has one, and most of its depth range is in the row
 //! of pixels below the horizon.
 
 use masked_occlusion_culling::YAxis;
@@ -19,15 +19,15 @@ static USUAL: Case = Case::new("ground plane from behind the eye to 1e5, near pl
 static NONE: Case = Case::new("ground plane from behind the eye to 1e5, no near plane", || clipped(0.0));
 
 const SIZE: (usize, usize) = (1024, 1024);
-/// For triangles that are clipped, which take longer to compare.
+/// For clipped triangles, which take longer to compare.
 const SMALL: (usize, usize) = (256, 256);
 const HALF: i64 = 512 * UNIT;
 const NEAREST: f32 = 1e-3;
 const FARTHEST: f32 = 1e5;
-/// How far the eye is above the ground; the lower, the more of the near end is in view.
+/// Height of the eye above the ground; the lower it is, the more of the near end is in view.
 const HEIGHTS: [f32; 7] = [5e-4, 1e-3, 0.02, 1.7, 30.0, 1000.0, 40_000.0];
 
-/// The ground's vertex at a distance that lands on row `y` and column `x` of the grid, in units; rows run down.
+/// The ground's vertex at the distance that lands on row `y` and column `x` of the grid, in units; rows run down.
 fn vertex(height: f32, x: i64, y: i64) -> [f32; 4] {
     let half = HALF as f64;
     // From the horizon in the middle of the screen down to the vertex, in half screens: height / w.
@@ -36,8 +36,8 @@ fn vertex(height: f32, x: i64, y: i64) -> [f32; 4] {
     [((x - HALF) as f64 / half * f64::from(w)) as f32, (-down * f64::from(w)) as f32, 0.0, w]
 }
 
-/// The rows of the grid at which the ground is as far as it goes, and as near; but not so far below the screen that
-/// there is doubt of where on the grid a vertex lands.
+/// The rows of the grid at the ground's farthest and nearest ends; but not so far below the screen that it is uncertain
+/// where on the grid a vertex lands.
 fn ends(height: f32) -> (i64, i64) {
     let row = |w: f32| HALF + (f64::from(height) / f64::from(w) * HALF as f64) as i64;
     (row(FARTHEST).max(HALF + 1), row(NEAREST).min(HALF + 1400 * UNIT))
@@ -48,7 +48,7 @@ fn triangles(vertices: &[[f32; 4]]) -> Vec<Triangle> {
     vertices.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]).collect()
 }
 
-/// Two triangles from `top` to `bottom`, and from column `left` to `right`.
+/// Two triangles from row `top` to `bottom` and from column `left` to `right`.
 fn quad(height: f32, [left, right]: [i64; 2], [top, bottom]: [i64; 2]) -> [[f32; 4]; 6] {
     let v = |x, y| vertex(height, x, y);
     [v(left, top), v(right, top), v(right, bottom), v(left, top), v(right, bottom), v(left, bottom)]
@@ -82,7 +82,8 @@ fn rows() -> Measured {
     let mut measured = Measured::default();
     for height in HEIGHTS {
         let (top, bottom) = ends(height);
-        // Rows of tiles of ever the same share of what remains to the horizon, as a terrain's levels of detail.
+        // Rows of tiles, each covering the same share of the remaining distance to the horizon, like a terrain's levels
+        // of detail.
         let mut edges = vec![bottom];
         while edges.len() < 50 && edges[edges.len() - 1] > top {
             let last = edges[edges.len() - 1];
@@ -98,7 +99,7 @@ fn rows() -> Measured {
         let triangles = triangles(&mesh);
         oracle.clear();
         triangles.iter().for_each(|t| oracle.draw(t));
-        // At one depth no rule gives up a pixel, and all are compared.
+        // At a single depth no rule gives up a pixel, and all pixels are compared.
         let flat: Vec<_> = triangles.iter().map(|t| t.map(|v| Vertex { z: 1.0, ..v })).collect();
         subject.clear();
         subject.draw(&flat);
@@ -106,7 +107,7 @@ fn rows() -> Measured {
         subject.clear();
         subject.draw_clip(&mesh);
         measured.depths(subject.depth(), &oracle);
-        // No tile is hidden by the others that comes to the centre of a pixel.
+        // No tile that covers a pixel's centre is hidden by the others.
         for (t, corners) in triangles.iter().zip(mesh.chunks_exact(3)) {
             if oracle.shows(t) {
                 measured.shown(subject.test_clip(corners));
@@ -140,19 +141,20 @@ fn clipped(near: f32) -> Measured {
     measured
 }
 
-/// One quad for all of it: the depth of a whole plane has to come from three corners whose 1/w differ by 10^8.
+/// A single quad for all of it: the depth of a whole plane has to come from three corners whose 1/w differ by a factor
+/// of 10^8.
 #[test]
 fn a_ground_plane_of_two_triangles() {
     QUADS.measured().assert_exact().assert_behind(1.3e-4, 0.0);
 }
 
-/// Tiles that grow with distance; the last rows are lower than a pixel.
+/// Tiles that grow with distance; the last rows are less than a pixel high.
 #[test]
 fn a_ground_plane_of_rows() {
     ROWS.measured().assert_exact().assert_behind(0.25, 0.07);
 }
 
-/// The plane goes on under the eye and behind it, as it does in games.
+/// The plane continues under the eye and behind it, as it does in games.
 #[test]
 fn a_ground_plane_from_behind_the_eye() {
     let m = CLIPPED.measured();
@@ -160,7 +162,7 @@ fn a_ground_plane_from_behind_the_eye() {
     assert_eq!(m.refused, 0);
 }
 
-/// With the near plane of a usual camera.
+/// With the near plane of a typical camera.
 #[test]
 fn a_ground_plane_from_behind_the_eye_and_a_usual_near_plane() {
     let m = USUAL.measured();
@@ -168,8 +170,8 @@ fn a_ground_plane_from_behind_the_eye_and_a_usual_near_plane() {
     assert_eq!(m.refused, 0);
 }
 
-/// As an object is before a near plane is set: only the guard band cuts the ground, at w = height / 1984. From a tenth of a
-/// unit above it that is too near for triangles as large as 1e5, and they are refused.
+/// As for an object whose near plane has not been set: only the guard band clips the ground, at w = height / 1984. From
+/// a tenth of a unit above it, that is too near for triangles as large as 1e5, and they are dropped.
 #[test]
 fn a_ground_plane_from_behind_the_eye_without_near_plane() {
     let m = NONE.measured();

@@ -1,5 +1,6 @@
-//! T-junctions: a corner of one triangle on an edge of another, where a terrain's levels of detail meet or a wall was
-//! cut by a tool. On the line they hold; off the line they gape where the exact triangles do, and nowhere else.
+//! T-junctions: a corner of one triangle on an edge of another, where a terrain's levels of detail meet or a tool has
+//! cut a wall. If the corner is on the line, there is no gap; if it is off the line, the gaps are those of the exact
+//! triangles and no others.
 
 use masked_occlusion_culling::YAxis;
 
@@ -17,8 +18,8 @@ const SIZE: (usize, usize) = (128, 64);
 
 type Point = (i64, i64);
 
-/// A seam of `steps` equal steps between grid points: on one side a quad of two triangles whose edge is the whole seam, on
-/// the other a fan with a corner at every point, those between the ends `off` units from the line.
+/// A seam of `steps` equal steps between grid points. On one side is a quad of two triangles, with the whole seam as an
+/// edge; on the other a fan with a corner at every point, where the inner ones are `off` units from the line.
 struct Seam {
     from: Point,
     step: Point,
@@ -43,7 +44,7 @@ impl Seam {
         (self.from.0 + self.step.0 * k, self.from.1 + self.step.1 * k)
     }
 
-    /// A point moved square to the seam, by about 100 pixels, towards the quad's side or the fan's.
+    /// A point moved perpendicular to the seam, by about 100 pixels, to the quad's side or the fan's.
     fn beside(&self, (x, y): Point, side: i64) -> Point {
         let far = side * 25_000 / self.step.0.abs().max(self.step.1.abs());
         (x - self.step.1 * far, y + self.step.0 * far)
@@ -66,7 +67,7 @@ impl Seam {
             vec![[first, last, b].map(|p| vertex(p, 0.5)), [vertex(first, 0.5), vertex(b, 0.25), vertex(a, 1.0)]];
         let fan = |k: i64| {
             let (x, y) = self.point(k);
-            // Off to the fan's side, so that a gap opens.
+            // Displaced to the fan's side, so that a gap opens.
             let off = if k == 0 || k == self.steps { 0 } else { -self.off };
             vertex((x - off * self.step.1.signum(), y + off), 0.5)
         };
@@ -94,7 +95,7 @@ fn junctions(off: i64) -> Measured {
             }
         }
         if off == 0 {
-            // The outline knows nothing of the seam: every pixel in it is covered once.
+            // The outline is independent of the seam: every pixel in it is covered once.
             exact.fill(0);
             for row in 0..SIZE.1 {
                 for pair in crossings(&seam.outline(), row as i64).chunks_exact(2) {

@@ -1,5 +1,5 @@
-//! Ten thousand layers in one sub-tile of 8x4 pixels, in every order that tells the rules apart: foliage, hair, a city
-//! seen along its streets. A sub-tile keeps two to four depths of them.
+//! Ten thousand layers in one sub-tile of 8x4 pixels, in every order that distinguishes the rules: foliage, hair, a
+//! city seen along its streets. A sub-tile stores two to four of their depths.
 
 use masked_occlusion_culling::{UpdateRule, YAxis};
 
@@ -19,7 +19,7 @@ static FOUR_LAYER: Case = Case::new("10,000 layers in a sub-tile, four layers", 
 const SIZE: (usize, usize) = (8, 4);
 const LAYERS: u32 = 10_000;
 
-/// Layer numbers, 0 the nearest, in the order in which they are drawn.
+/// Layer numbers, 0 being the nearest, in drawing order.
 fn orders() -> Vec<(&'static str, Vec<u32>)> {
     let all = || 0..LAYERS;
     let mut shuffled: Vec<u32> = all().collect();
@@ -32,7 +32,7 @@ fn orders() -> Vec<(&'static str, Vec<u32>)> {
         // The nearest, the farthest, the second nearest, ...
         ("from both ends", (0..half).flat_map(|k| [k, LAYERS - 1 - k]).collect()),
         ("from the middle", (0..half).flat_map(|k| [half + k, half - 1 - k]).collect()),
-        // 0, 5000, 2500, 7500, ...: ever the largest gap.
+        // 0, 5000, 2500, 7500, ...: always halving the largest gap.
         ("halving the gaps", halving()),
         // A hundred objects of a hundred layers, each front to back, the farthest object first.
         ("objects back to front", all().map(|k| (99 - k / 100) * 100 + k % 100).collect()),
@@ -43,7 +43,7 @@ fn halving() -> Vec<u32> {
     (0..1_u32 << 14).map(|k| k.reverse_bits() >> 18).filter(|k| *k < LAYERS).collect()
 }
 
-/// How the depths of neighbouring layers lie to each other.
+/// How the depths of neighbouring layers differ.
 #[derive(Clone, Copy)]
 enum Spacing {
     /// w from 1 to 1001.
@@ -61,12 +61,12 @@ impl Spacing {
     }
 }
 
-/// A layer's triangle in clip space: one in four covers the sub-tile, the others a part of it.
+/// A layer's triangle in clip space: one in four covers the whole sub-tile, the others a part of it.
 fn layer(random: &mut fastrand::Rng, w: f32) -> [[f32; 4]; 3] {
     let corners = match random.u32(0..4) {
         0 => [(-8, -8), (40, -8), (-8, 40)],
         1 => {
-            // A half or so, from one side.
+            // About half of it, from one side.
             let (a, b) = (random.i32(0..=16), random.i32(0..=16));
             [(a, -8), (b, 16), ([-60, 60][random.usize(0..2)], 4)]
         }
@@ -88,9 +88,10 @@ fn layers(rule: UpdateRule) -> Measured {
                 let corners = layer(&mut random, spacing.w(number));
                 let t: Triangle = corners.map(|v| snapped(v, SIZE, false).expect("a vertex on the grid"));
                 assert!(t.iter().all(|v| v.x % (UNIT / 2) == 0 && v.y % (UNIT / 2) == 0));
-                // Where something was drawn before, coverage can no longer be wrong.
+                // Where something has already been drawn, coverage can no longer be wrong.
                 measured.pixels += oracle.depth.iter().filter(|d| **d < 0.0).count() as u64;
-                // What shows before it is drawn may not be called hidden, nor be so by itself afterwards.
+                // If it is visible before it is drawn, it must not be reported hidden then, nor afterwards, since it does not
+                // hide itself.
                 if oracle.shows(&t) {
                     measured.shown(subject.test_clip(&corners));
                     subject.draw_clip(&corners);
@@ -110,7 +111,7 @@ fn layers(rule: UpdateRule) -> Measured {
     measured
 }
 
-/// Each pixel is asked about at its exact depth, or the next that is nearer.
+/// Each pixel is tested at its exact depth, or at the next nearer value.
 fn pixels(measured: &mut Measured, subject: &Subject, oracle: &Oracle) {
     for (i, &exact) in oracle.depth.iter().enumerate().filter(|(_, d)| **d > 0.0) {
         let mut w = (1.0 / exact) as f32;

@@ -1,4 +1,4 @@
-//! What is measured of a case; docs/accuracy.md says what each figure is.
+//! The measurements of a case; docs/accuracy.md defines each figure.
 
 use masked_occlusion_culling::CullingResult;
 
@@ -8,7 +8,8 @@ use crate::oracle::homogeneous::Homogeneous;
 use crate::oracle::{Oracle, Triangle, depth_at_pixel, span};
 use crate::support::is_empty;
 
-/// Exact depths are off by a few parts in 10^16; less than this, in parts of an exact depth, is none.
+/// Exact depths have an error of a few parts in 10^16; a difference below this, relative to the exact depth, counts as
+/// none.
 const EXACT: f64 = 1e-15;
 
 #[derive(Clone, Debug)]
@@ -17,33 +18,33 @@ pub struct Measured {
     pub triangles: u64,
     /// Pixels whose coverage was compared.
     pub pixels: u64,
-    /// Pixels that are covered and should not be, or should be and are not.
+    /// Pixels that are covered but should not be, or the reverse.
     pub wrong: u64,
-    /// How far the centre of a wrong pixel lies from the exact line, at most, in pixels.
+    /// The largest distance of a wrong pixel's centre from the exact line, in pixels.
     pub off: f64,
     /// Pixels whose depth was compared.
     pub depths: u64,
-    /// Stored less exact depth at the pixel's centre, in units in the last place of the exact one: the greatest. Above
-    /// zero is too near.
+    /// The maximum of stored minus exact depth at the pixel's centre, in units in the last place of the exact depth.
+    /// Positive means too near.
     pub nearer: f64,
-    /// Stored depth less the exact bound of its block of 8x4 pixels, in units in the last place of the bound: the greatest.
-    /// Above zero a point of the block between pixel centres may be farther than the buffer says.
+    /// The maximum of stored depth minus the exact bound of its block of 8x4 pixels, in units in the last place of the
+    /// bound. If positive, a point of the block between pixel centres may be farther than the buffer says.
     pub over: f64,
-    /// Exact bound less stored depth, in units in the last place of the bound: the greatest.
+    /// The maximum of exact bound minus stored depth, in units in the last place of the bound.
     pub behind: f64,
-    /// The same as a part of the bound.
+    /// The same, relative to the bound.
     pub part: f64,
-    /// Pixels stored more than a hundredth behind the bound.
+    /// Pixels stored more than one percent behind the bound.
     pub far_behind: u64,
-    /// Triangles that were refused, and of which nothing was drawn.
+    /// Triangles that were dropped, of which nothing was drawn.
     pub refused: u64,
-    /// Pixels where neighbours leave a crack, or overlap.
+    /// Pixels where neighbours leave a crack or overlap.
     pub cracks: u64,
-    /// Pixels that are covered, and of which the buffer no longer knows.
+    /// Covered pixels that the update rule has given up.
     pub forgotten: u64,
-    /// Queries asked of what shows.
+    /// Queries of something visible.
     pub asked: u64,
-    /// Those of them answered OCCLUDED.
+    /// Those of them that were answered OCCLUDED.
     pub hidden: u64,
 }
 
@@ -70,7 +71,7 @@ impl Default for Measured {
 }
 
 impl Measured {
-    /// Takes in the depth stored for a pixel that something covers.
+    /// Records the stored depth of a pixel that something covers.
     pub fn depth(&mut self, stored: f32, exact: f64) {
         let stored = f64::from(stored);
         // NaN would be lost in every maximum below.
@@ -81,7 +82,7 @@ impl Measured {
         self.nearer = self.nearer.max(nearer / ulp(exact));
     }
 
-    /// Takes in how far it is behind a bound.
+    /// Records how far it is behind a bound.
     pub fn bound(&mut self, stored: f32, bound: f64) {
         let stored = f64::from(stored);
         self.behind = self.behind.max((bound - stored) / ulp(bound));
@@ -89,19 +90,19 @@ impl Measured {
         self.far_behind += u64::from(stored < 0.99 * bound);
     }
 
-    /// Takes in a pixel whose coverage is wrong, `distance` pixels from the line that decides.
+    /// Records a pixel with wrong coverage, `distance` pixels from the deciding line.
     pub fn wrong(&mut self, distance: f64) {
         self.wrong += 1;
         self.off = self.off.max(distance.abs());
     }
 
-    /// Takes in the answer about something that shows.
+    /// Records the answer for something visible.
     pub fn shown(&mut self, answer: CullingResult) {
         self.asked += 1;
         self.hidden += u64::from(answer == CullingResult::Occluded);
     }
 
-    /// A buffer that holds one triangle on the grid, every pixel of it.
+    /// Measures every pixel of a buffer that holds one triangle on the grid.
     pub fn one(&mut self, t: &Triangle, depth: &[f32], oracle: &Oracle) {
         self.triangles += 1;
         self.pixels += depth.len() as u64;
@@ -134,7 +135,7 @@ impl Measured {
         }
     }
 
-    /// The coverage alone of many triangles on the grid, drawn at one depth.
+    /// Measures only the coverage of many triangles on the grid, drawn at one depth.
     pub fn coverage(&mut self, triangles: impl Iterator<Item = Triangle> + Clone, depth: &[f32], oracle: &Oracle) {
         self.triangles += triangles.clone().count() as u64;
         self.pixels += depth.len() as u64;
@@ -147,8 +148,8 @@ impl Measured {
         }
     }
 
-    /// The depths alone of many triangles on the grid. The bound is the least exact depth of a block's 32 pixels, where all
-    /// of them are covered. A pixel that holds nothing though something covers it was given up by the update rule.
+    /// Measures only the depths of many triangles on the grid. The bound is the least exact depth of a block's 32
+    /// pixels, if all of them are covered. An empty pixel that something covers was given up by the update rule.
     pub fn depths(&mut self, depth: &[f32], oracle: &Oracle) {
         for block_row in 0..oracle.height / 4 {
             for block_column in 0..oracle.width / 8 {
@@ -171,7 +172,7 @@ impl Measured {
         }
     }
 
-    /// A triangle that is drawn alone. False: it was refused, and nothing was drawn.
+    /// Draws a single triangle. Returns false if it was dropped and nothing was drawn.
     pub fn taken(&mut self, subject: &mut Subject, t: &[[f32; 4]; 3]) -> bool {
         let before = subject.dropped();
         subject.clear();
@@ -185,20 +186,20 @@ impl Measured {
         !refused
     }
 
-    /// A buffer that holds one triangle that is clipped, given by what a pixel's ray meets. `farthest`: 1/w of its farthest
-    /// vertex.
+    /// Measures a buffer that holds one clipped triangle, given by its ray intersections. `farthest`: 1/w of its
+    /// farthest vertex.
     pub fn clipped(&mut self, exact: &Homogeneous, farthest: f64, depth: &[f32], width: usize) {
         self.triangles += 1;
         self.pixels += depth.len() as u64;
         for (i, &stored) in depth.iter().enumerate() {
             let (column, row) = (i % width, i / width);
             let inside = exact.inside_by(column, row);
-            // Closer than this the oracle itself cannot tell.
+            // At a smaller distance the oracle itself is uncertain.
             if is_empty(stored) == (inside > 0.0) && inside.abs() > 1e-9 {
                 self.wrong(inside);
             }
             if !is_empty(stored) {
-                // A pixel that is covered falsely lies beyond the line, where the plane may end.
+                // A wrongly covered pixel is beyond the line, where the plane may end.
                 let at = if inside > 0.0 { exact.depth(column, row) } else { exact.depth(column, row).max(farthest) };
                 self.depth(stored, at);
                 self.bound(stored, exact.block_depth(column, row).max(farthest));
@@ -206,7 +207,7 @@ impl Measured {
         }
     }
 
-    /// Takes in what another part of the case measured.
+    /// Adds the measurements of another part of the case.
     pub fn add(&mut self, other: &Measured) {
         self.triangles += other.triangles;
         self.pixels += other.pixels;
@@ -225,21 +226,22 @@ impl Measured {
         self.hidden += other.hidden;
     }
 
-    /// No pixel is covered wrongly, none is too near, and nothing is called hidden that shows.
+    /// No pixel is covered wrongly, none is too near, and nothing visible is reported hidden.
     pub fn assert_exact(&self) -> &Self {
         assert_eq!((self.wrong, self.cracks), (0, 0), "pixels covered wrongly: {self:?}");
         self.assert_safe()
     }
 
-    /// The same of what is clipped: a new corner is snapped, and pixels may be wrong whose centres lie within half a unit of
-    /// the grid, across, of the exact line. Here the unit's whole is allowed, for corners far out are snapped more coarsely.
+    /// The same for clipped triangles: a new corner is snapped, so pixels whose centres are within half a unit of the
+    /// grid of the exact line may be wrong. A whole unit is allowed here, because distant corners are snapped more
+    /// coarsely.
     pub fn assert_clipped(&self) -> &Self {
         assert!(self.off <= 1.0 / 256.0, "{} pixels off: {self:?}", self.off);
         assert_eq!(self.cracks, 0, "cracks: {self:?}");
         self.assert_safe()
     }
 
-    /// No pixel is too near, and nothing is called hidden that shows; and something was compared.
+    /// No pixel is too near, nothing visible is reported hidden, and something was compared.
     pub fn assert_safe(&self) -> &Self {
         assert!(self.depths > 500, "{self:?}");
         assert!(self.nearer <= 0.0, "stored too near: {self:?}");
@@ -248,14 +250,14 @@ impl Measured {
         self
     }
 
-    /// No pixel is farther behind its bound than a part of it, and no more than a share of them by over a hundredth.
+    /// No pixel is farther behind its bound than `part` of it, and at most `share` of them by more than one percent.
     pub fn assert_behind(&self, part: f64, share: f64) -> &Self {
         assert!(self.part <= part, "{} behind: {self:?}", self.part);
         assert!(self.behind_share() <= share, "{} are behind: {self:?}", self.behind_share());
         self
     }
 
-    /// The share of covered pixels that are more than a hundredth behind, or given up.
+    /// The share of covered pixels that are more than one percent behind, or given up.
     pub fn behind_share(&self) -> f64 {
         (self.far_behind + self.forgotten) as f64 / (self.depths + self.forgotten).max(1) as f64
     }

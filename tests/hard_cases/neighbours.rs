@@ -1,8 +1,9 @@
-//! Meshes of which some triangles are clipped and their neighbours are not. A clipped edge has a new corner, and if the
-//! two sides of it got different ones, the background would show through the crack.
+//! Meshes in which some triangles are clipped and their neighbours are not. A clipped edge has a new corner; if its two
+//! sides got different ones, the background would show through the crack.
 //!
-//! The mesh is a crumpled sphere around the eye: every ray meets it once, so that without a near plane every pixel of the
-//! screen has to be covered by exactly one triangle, though most triangles cross the eye's plane or leave the guard band.
+//! The mesh is a crumpled sphere around the eye: every ray meets it once, so without a near plane every pixel of the
+//! screen must be covered by exactly one triangle, although most triangles cross the eye's plane or leave the guard
+//! band.
 
 use masked_occlusion_culling::YAxis;
 
@@ -19,7 +20,8 @@ static CUT: Case = Case::new("mesh around the eye, near plane through it", || sp
 const SIZE: (usize, usize) = (64, 32);
 /// Cells along a cube's edge.
 const CELLS: i32 = 8;
-/// What is within this of the near plane's trace may be covered or not, in pixels; elsewhere it is certain.
+/// Pixels within this distance of the near plane's trace, in pixels, may be covered or not; elsewhere coverage is
+/// certain.
 const BORDER: f64 = 1.0 / 64.0;
 
 /// Triangles of clip-space vertices (x, y, w), of a sphere around the eye with radii from 1 to 2.
@@ -33,7 +35,7 @@ fn sphere(random: &mut fastrand::Rng, stretch: f32) -> Vec<[[f32; 3]; 3]> {
         // Turned by rational sines and cosines (3, 4, 5 and 5, 12, 13), so that no face looks along an axis.
         let (x, z) = (0.6 * x - 0.8 * z, 0.8 * x + 0.6 * z);
         let (y, z) = ((12.0 * y - 5.0 * z) / 13.0, (5.0 * y + 12.0 * z) / 13.0);
-        // The wider the view, the more is behind the guard band's planes only.
+        // The wider the view, the more of the mesh is behind the guard band's planes only.
         [x / stretch, y * 2.0 / stretch, z]
     };
     let mut triangles = Vec::new();
@@ -61,7 +63,7 @@ fn spheres(nears: &[f32]) -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     let tight = nears[0] == 0.0;
     for &near in nears {
-        // From a wide view to a telescope, through which every triangle is larger than the guard band.
+        // From a wide view to a telephoto view, in which every triangle is larger than the guard band.
         for stretch in [4.0, 1.0, 0.05, 1e-4] {
             subject.set_near(near);
             let triangles = sphere(&mut random, stretch);
@@ -84,7 +86,7 @@ fn spheres(nears: &[f32]) -> Measured {
                         exact.beyond_near_by(column, row) > BORDER && exact.within_edges_by(column, row) > -BORDER;
                 }
             }
-            // However it was clipped: once.
+            // Exactly once, however it was clipped.
             for (n, certain) in times.iter().zip(&certain) {
                 let right = if *certain { *n == 1 } else { *n <= 1 };
                 measured.cracks += u64::from(!right);
@@ -92,7 +94,7 @@ fn spheres(nears: &[f32]) -> Measured {
             if tight {
                 assert!(certain.iter().all(|c| *c), "the mesh has a hole");
             }
-            // All of it at once, and asked.
+            // All of it in one call, then queried.
             subject.clear();
             let all: Vec<_> = triangles.iter().flatten().map(|&[x, y, w]| [x, y, 0.0, w]).collect();
             subject.draw_clip(&all);
@@ -102,13 +104,13 @@ fn spheres(nears: &[f32]) -> Measured {
     measured
 }
 
-/// Edges that cross the eye's plane or the guard band, of which one side is clipped and the other is not, or both are.
+/// Edges that cross the eye's plane or the guard band, with one side clipped or both.
 #[test]
 fn neighbours_clipped_and_unclipped_leave_no_crack() {
     AROUND.measured().assert_clipped().assert_behind(0.04, 1e-4);
 }
 
-/// The near plane takes a bite out of the mesh, and what is left stays whole.
+/// The near plane removes part of the mesh, and the rest has no cracks.
 #[test]
 fn the_near_plane_through_a_mesh_leaves_no_crack() {
     CUT.measured().assert_clipped().assert_behind(0.002, 0.0);

@@ -1,5 +1,6 @@
-//! Triangles whose w runs over twelve decades and more: a wall that passes by the camera, a sky box's face, a beam from
-//! the muzzle to the horizon. 1/w then changes by as much, and its gradient on thin triangles by far more: docs/accuracy.md says why f32 holds it.
+//! Triangles whose w spans twelve orders of magnitude and more: a wall that passes the camera, a face of a sky box, a
+//! beam from the muzzle to the horizon. 1/w then changes by as much, and its gradient on thin triangles by far more:
+//! docs/accuracy.md explains why f32 suffices.
 
 use masked_occlusion_culling::YAxis;
 
@@ -20,7 +21,7 @@ static DENORMAL: Case = Case::new("w from 1e-45 to 1 in one triangle", denormal)
 
 const SIZE: (usize, usize) = (256, 128);
 
-/// The w of three corners, for all orders.
+/// The w of three corners, in all orders.
 const W: [[f32; 3]; 6] =
     [[1e-6, 1.0, 1e6], [1e6, 1e-6, 1.0], [1.0, 1e6, 1e-6], [1e-6, 1e6, 1e6], [1e6, 1e-6, 1e-6], [1e-6, 1e-3, 1e3]];
 
@@ -55,11 +56,11 @@ fn whole() -> Measured {
     measured
 }
 
-/// Triangles that are clipped at `near`, or refused because their size would blur what is so near.
+/// Triangles that are clipped at `near`, or dropped because their size would blur anything so near.
 fn clipped(near: f32, triangles: &[[[f32; 4]; 3]]) -> Measured {
     let mut subject = Subject::new(SIZE, YAxis::Down);
     subject.set_near(near);
-    // Nearer than 2^-30 nothing is projected.
+    // Nothing nearer than 2^-30 is projected.
     let near = f64::from(near).max(1.0 / f64::from(1 << 30));
     let mut measured = Measured::default();
     for t in triangles {
@@ -77,7 +78,7 @@ fn clipped(near: f32, triangles: &[[[f32; 4]; 3]]) -> Measured {
     measured
 }
 
-/// Triangles in all orders of w, every third with a corner as far behind the eye as the farthest is in front.
+/// Triangles with w in all orders; every third has a corner as far behind the eye as the farthest is in front.
 fn crossing(random: &mut fastrand::Rng) -> Vec<[[f32; 4]; 3]> {
     let mut triangles = Vec::new();
     for k in 0..150 {
@@ -105,11 +106,12 @@ fn steep() -> Measured {
     let mut measured = Measured::default();
     let mut random = fastrand::Rng::with_seed(23);
     for k in 0..900 {
-        // 1/w from 2^-40 to 2^30: the nearest and the farthest that are drawn, and one between or at either end.
+        // 1/w from 2^-40 to 2^30: the nearest and the farthest that can be drawn, and a third in between or at either
+        // end.
         let mut exponents = [30, -40, [30, 29, 0, -30, -40][k % 5]];
         random.shuffle(&mut exponents);
         let [a, b] = [point(&mut random), point(&mut random)];
-        // From 1/256 pixel thick to any.
+        // From 1/256 pixel thick to any thickness.
         let c = match k % 3 {
             0 => (a.0 + 1, a.1),
             1 => (b.0, b.1 + random.i64(1..=300)),
@@ -131,7 +133,7 @@ fn denormal() -> Measured {
     let triangles: Vec<_> = (0..200)
         .map(|k| {
             let tiny = [1e-45, f32::MIN_POSITIVE, 1e-30, 1e-20, 1e-10][k % 5];
-            // x and y are given as they are: times so small a w they would be nothing.
+            // x and y are given directly: multiplied by such a small w they would vanish.
             let mut t = [1e-3, 1.0, 0.5].map(|w: f32| vertex(point(&mut random), w));
             t[k % 3] = [random.f32() - 0.5, random.f32() - 0.5, 0.0, tiny];
             t
@@ -140,13 +142,13 @@ fn denormal() -> Measured {
     clipped(0.0, &triangles)
 }
 
-/// Nothing to clip: the plane through three depths of which one is all that counts.
+/// Nothing to clip: the plane through three depths, only one of which is significant.
 #[test]
 fn w_from_1e_6_to_1e6_in_one_triangle() {
     WHOLE.measured().assert_exact().assert_behind(0.15, 5e-4);
 }
 
-/// The same and a corner behind the eye, cut by a near plane at 1e-3, 0.1 and 1.5.
+/// The same with a corner behind the eye, clipped by a near plane at 1e-3, 0.1 and 1.5.
 #[test]
 fn w_from_1e_6_to_1e6_cut_by_the_near_plane() {
     let m = CUT.measured();
@@ -154,8 +156,8 @@ fn w_from_1e_6_to_1e6_cut_by_the_near_plane() {
     assert_eq!(m.refused, 0);
 }
 
-/// Where the near plane is so near that doubles would blur a new corner by a quarter of a subpixel, which here is from a
-/// ratio of 2 * 10^9 on, a triangle is refused and counted, and nothing of it is drawn.
+/// If the near plane is so near that doubles would blur a new corner by a quarter of a subpixel, which here happens
+/// from a ratio of 2 * 10^9 on, a triangle is dropped and counted, and nothing of it is drawn.
 #[test]
 fn w_from_1e_6_to_1e6_cut_too_near_is_refused() {
     let mut random = fastrand::Rng::with_seed(25);
@@ -164,13 +166,13 @@ fn w_from_1e_6_to_1e6_cut_too_near_is_refused() {
     assert!(m.refused > 50 && m.triangles - m.refused > 20, "{m:?}");
 }
 
-/// As steep as depth gets within the range of w that is drawn: 2^30 across 1/256 pixel.
+/// The steepest depth gradient within the range of w that is drawn: 2^30 across 1/256 pixel.
 #[test]
 fn the_steepest_depth_gradients() {
     STEEP.measured().assert_exact().assert_behind(0.4, 4e-4);
 }
 
-/// 1/w itself overflows f32, and a gradient made of it would.
+/// 1/w itself overflows f32, and so would a gradient computed from it.
 #[test]
 fn w_so_small_that_1_over_w_overflows() {
     let m = DENORMAL.measured();

@@ -1,7 +1,7 @@
-//! Matrices of tiny and of huge scale, and worlds far from their origin: a model in micrometres, a planet in metres.
+//! Matrices with tiny and huge scales, and worlds far from their origin: a model in micrometres, a planet in metres.
 //!
-//! The library transforms in f32, as a GPU does. What is measured here is the whole way from positions, beside an oracle
-//! that transforms in double: where products and sums of f32 lose digits, the triangle is another one.
+//! The library transforms in f32, as a GPU does. This measures the whole path from positions, against an oracle that
+//! transforms in double: where products and sums in f32 lose digits, the triangle differs.
 
 use glam::Mat4;
 use masked_occlusion_culling::{Vertices, YAxis};
@@ -40,7 +40,7 @@ fn triangles() -> Vec<Positions> {
     triangles
 }
 
-/// The camera as the library takes it, its linear part times `linear` and then all of it times `view`.
+/// The camera as passed to the library: its linear part times `linear`, and then all of it times `view`.
 fn matrix(linear: f64, view: f64) -> Mat4 {
     let rows = CAMERA.map(|[x, y, z, t]| [x * linear, y * linear, z * linear, t].map(|c| (c * view) as f32));
     of_rows(rows)
@@ -88,7 +88,7 @@ fn powers() -> Measured {
             let scale = power(model) as f32;
             let scaled: Vec<_> = triangles.iter().map(|t| t.map(|p| p.map(|c| c * scale))).collect();
             let depth = measure(&mut subject, &mut measured, &matrix(power(-model), power(view)), &scaled);
-            // The same pixels, and depths that differ by the view's power of two alone.
+            // The same pixels, and depths that differ only by the view's power of two.
             let same = |(a, b): (&f32, &f32)| if *a < 0.0 { *b < 0.0 } else { *a == *b * power(view) as f32 };
             if let Some(i) = plain.iter().zip(&depth).position(|p| !same(p)) {
                 let (plain, scaled) = (plain[i], depth[i]);
@@ -124,25 +124,25 @@ fn far_away(distance: f64) -> Measured {
     measured
 }
 
-/// A power of two changes nothing but the exponent: the same pixels and the same digits.
+/// A power of two only changes the exponent: the same pixels and the same digits.
 #[test]
 fn matrices_scaled_by_powers_of_two() {
     POWERS.measured().assert_clipped().assert_behind(1.1e-4, 0.0);
 }
 
-/// Other factors round each element, and the oracle takes them as they are.
+/// Other factors round each element, and the oracle uses the rounded elements.
 #[test]
 fn matrices_of_tiny_and_huge_scale() {
     OTHERS.measured().assert_clipped().assert_behind(1.1e-4, 0.0);
 }
 
-/// The matrix takes the distance away again, in f32, and digits of the position go with it.
+/// The matrix subtracts the distance again, in f32, which loses digits of the position.
 #[test]
 fn a_world_a_thousand_units_from_its_origin() {
     THOUSAND.measured().assert_clipped().assert_behind(1.4e-4, 0.0);
 }
 
-/// Six of seven digits go: no promise holds for positions, only for what f32 makes of them.
+/// Six of seven digits are lost: there is no guarantee for the original positions, only for their values in f32.
 #[test]
 fn a_world_a_million_units_from_its_origin() {
     let m = MILLION.measured();

@@ -1,5 +1,5 @@
 //! Slivers as long as the largest screen: cables, fences, the seams of terrain seen edge-on. Their planes are
-//! ill-conditioned, and their edges pass a pixel's centre closer than single precision can tell.
+//! ill-conditioned, and their edges pass pixel centres closer than single precision can resolve.
 
 use masked_occlusion_culling::YAxis;
 
@@ -16,7 +16,8 @@ static HIGH: Case = Case::new("slivers in every direction, 16,384 high", || sliv
 /// Half a sliver's length along its longer axis, in units: 8,192 pixels.
 const REACH: i64 = 8192 * UNIT;
 
-/// Directions of that length: every 1/16 of a quarter turn's tangent, and by some units from level and from upright.
+/// Directions of that length: in steps of 1/16 of the tangent of a quarter turn, and a few units off horizontal and
+/// vertical.
 fn directions() -> Vec<(i64, i64)> {
     let mut found = Vec::new();
     for k in -16..16 {
@@ -40,9 +41,9 @@ fn slivers(size: (usize, usize), axis: YAxis) -> Measured {
     let middle = (size.0 as i64 / 2 * UNIT, size.1 as i64 / 2 * UNIT);
     for (k, (dx, dy)) in directions().into_iter().enumerate() {
         for (j, width) in [1, 2, 24, UNIT].into_iter().enumerate() {
-            // Through the middle of the screen, but for some units either way.
+            // Through the middle of the screen, give or take some units.
             let (x, y) = (middle.0 + random.i64(-300..=300), middle.1 + random.i64(-300..=300));
-            // The third corner lies `width` off the line, at the end or somewhere between.
+            // The third corner is `width` off the line, at the end or somewhere in between.
             let part = [16, 8, 3, -16][(k + j) % 4];
             let (off_x, off_y) = if dx.abs() > dy.abs() { (0, width) } else { (width, 0) };
             let z = [[0, 0, 0], [0, 6, 3], [5, 0, 1]][(k / 2 + j) % 3].map(|k| 1.0 / f64::from(1 << k));
@@ -66,7 +67,7 @@ fn slivers_in_every_direction_at_16384_wide() {
     WIDE.measured().assert_exact().assert_behind(0.06, 5e-4);
 }
 
-/// The same upright, with rows that run up.
+/// The same, vertical, with rows that run up.
 #[test]
 fn slivers_in_every_direction_at_16384_high() {
     HIGH.measured().assert_exact().assert_behind(0.06, 5e-4);

@@ -1,4 +1,4 @@
-//! The library as it is measured: the plainest instruction set and the best one at once, which have to agree to the bit.
+//! The library under measurement: the simplest instruction set and the best one together, which must agree to the bit.
 
 use masked_occlusion_culling::{
     CullingResult, DrawOptions, Implementation, MaskedOcclusionCulling, UpdateRule, Vertices, YAxis,
@@ -53,7 +53,7 @@ impl Subject {
         self.render(Vertices::clip_space(vertices), indices, &both_sides());
     }
 
-    /// Draws both sides of clip-space vertices, three a triangle.
+    /// Draws both sides of clip-space vertices, three per triangle.
     pub fn draw_clip(&mut self, vertices: &[[f32; 4]]) {
         let indices: Vec<u32> = (0..vertices.len() as u32).collect();
         self.draw_mesh(vertices, &indices);
@@ -65,12 +65,12 @@ impl Subject {
         self.draw_mesh(&vertices, &indices);
     }
 
-    /// How many triangles were refused since the object was made.
+    /// How many triangles have been dropped since the object was made.
     pub fn dropped(&self) -> i64 {
         self.objects[0].statistics().occluders.num_dropped_triangles
     }
 
-    /// What all objects answer about both sides of clip-space vertices.
+    /// The common answer of all objects for both sides of clip-space vertices.
     pub fn test_mesh(&self, vertices: &[[f32; 4]], indices: &[u32]) -> CullingResult {
         let vertices = Vertices::clip_space(vertices);
         self.answer(|moc| moc.test_triangles(vertices, indices, &both_sides()).unwrap())
@@ -81,7 +81,7 @@ impl Subject {
         self.test_mesh(vertices, &indices)
     }
 
-    /// What all objects answer about one pixel at a depth.
+    /// The common answer of all objects for one pixel at a depth.
     pub fn test_pixel(&self, column: usize, row: usize, w: f32) -> CullingResult {
         let at = |n: usize, size: usize| (2.0 * (n as f64 + 0.5) / size as f64 - 1.0) as f32;
         let (x, row) = (at(column, self.size.0), at(row, self.size.1));
@@ -97,7 +97,7 @@ impl Subject {
         first
     }
 
-    /// The depth of every pixel, the same bits with all objects.
+    /// The depth of every pixel, identical in all objects.
     pub fn depth(&mut self) -> &[f32] {
         crate::support::read(&self.objects[0], &mut self.depth);
         for moc in &self.objects[1..] {

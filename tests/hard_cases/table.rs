@@ -1,4 +1,4 @@
-//! The table of docs/accuracy.md: a row a case.
+//! The table of docs/accuracy.md, with a row per case.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::cases::{Case, all};
 const BEGIN: &str = "<!-- figures: UPDATE_ACCURACY=1 cargo test --test hard_cases -->\n";
 const END: &str = "<!-- end of figures -->\n";
 
-/// A whole number with its thousands apart.
+/// An integer with thousands separators.
 fn count(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();
@@ -22,7 +22,7 @@ fn count(n: u64) -> String {
     out
 }
 
-/// Units in the last place: a digit after the point where that says something.
+/// Units in the last place, with a decimal if that is significant.
 fn ulps(x: f64) -> String {
     match x.abs() {
         f64::INFINITY => "none".into(),
@@ -33,7 +33,7 @@ fn ulps(x: f64) -> String {
     }
 }
 
-/// A part of one, as a percentage.
+/// A fraction as a percentage.
 fn percent(x: f64) -> String {
     let x = 100.0 * x;
     match x {
@@ -82,7 +82,7 @@ fn table() -> String {
     out
 }
 
-/// What is committed is what is measured now.
+/// The committed table matches the current measurements.
 #[test]
 fn the_committed_table_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");

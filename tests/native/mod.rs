@@ -1,4 +1,4 @@
-//! The libraries of this package as C and C++ programs see them: where cargo put them, and how to link them.
+//! The libraries of this package as C and C++ programs use them: where cargo put them, and how to link them.
 #![allow(dead_code)]
 
 mod program;
@@ -12,7 +12,7 @@ pub use program::{Link, Program, build, run};
 #[allow(unused_imports)]
 pub use target::target;
 
-/// The folder of the library: that of this package, or above it where the demo uses this module.
+/// The package's folder: this one, or the one above it if the demo uses this module.
 pub fn root() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().find(|folder| folder.join("cpp-examples").is_dir()).unwrap_or(package)
@@ -39,8 +39,9 @@ fn library(link: Link) -> Result<PathBuf, String> {
     })
 }
 
-/// cargo builds every kind of library that Cargo.toml names before a test or a program that depends on it, and leaves those for C
-/// beside the executable of a test, and in `deps` beside that of a program. What lies beside a program itself may be older.
+/// cargo builds every kind of library in Cargo.toml before a test or a program that depends on it. It places those for
+/// C next to the executable of a test, and in `deps` next to that of a program. A library next to a program itself may
+/// be out of date.
 fn find(name: &str) -> Result<PathBuf, String> {
     let executable = env::current_exe().map_err(|e| format!("where this program lies is unknown: {e}"))?;
     let folder = executable.parent().unwrap_or(Path::new("."));

@@ -1,4 +1,4 @@
-//! Compiles C and C++ programs against include/ and the library, for whoever asks, and runs them.
+//! Compiles C and C++ programs against include/ and the library, and runs them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,16 +17,16 @@ pub enum Link {
 pub struct Program<'a> {
     /// `.c` or `.cpp`.
     pub source: &'a Path,
-    /// The folder that the program and what comes up on the way are written to. It must exist.
+    /// The folder for the program and intermediate files. It must exist.
     pub out: &'a Path,
     pub link: Link,
     /// Macros.
     pub defines: &'a [(&'a str, &'a str)],
-    /// Further arguments of the compiler.
+    /// Additional compiler arguments.
     pub flags: &'a [&'a str],
 }
 
-/// Compiles and links; returns the program's path, or what the compiler said.
+/// Compiles and links; returns the program's path, or the compiler's output.
 pub fn build(program: &Program) -> Result<PathBuf, String> {
     let cpp = program.source.extension().is_some_and(|e| e == "cpp");
     let mut build = target().compiler(cpp, program.out);
@@ -34,7 +34,7 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
     build.std(if cpp { if target().is_msvc() { "c++14" } else { "c++11" } } else { "c11" });
     let compiler = build.try_get_compiler().map_err(|e| format!("no C++ compiler was found: {e}"))?;
 
-    // A name of its own: Windows may still hold the file of a program that has just run.
+    // A unique name: Windows may still lock the file of a program that has just run.
     static BUILT: AtomicUsize = AtomicUsize::new(0);
     let stem = program.source.file_stem().unwrap_or_default().display();
     let name = program.out.join(format!("{stem}-{}", BUILT.fetch_add(1, Ordering::Relaxed)));
@@ -58,7 +58,7 @@ pub fn build(program: &Program) -> Result<PathBuf, String> {
     run(&mut command).map(|_| exe)
 }
 
-/// Runs a command to its end; returns what it printed, or why it failed.
+/// Runs a command to completion; returns its output, or why it failed.
 pub fn run(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|e| format!("{}: {e}", command.get_program().display()))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

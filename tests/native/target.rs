@@ -1,5 +1,5 @@
-//! The target for which C and C++ programs are compiled: the test's own, or another one whose libraries were built before
-//! (`.ci/windows`). In the latter case the environment has
+//! The target for which C and C++ programs are compiled: the test's own, or another one whose libraries were built
+//! before (`.ci/windows`). In the latter case the environment contains
 //!   MOC_TEST_TARGET      its triple
 //!   MOC_TEST_LIBRARIES   the folder of its libraries
 //!   MOC_TEST_RUNNER      what runs its programs here
@@ -31,7 +31,7 @@ pub fn target() -> &'static Target {
     })
 }
 
-/// The triple of this program, in as much detail as the choice of a C compiler needs.
+/// The triple of this program, as detailed as choosing a C compiler requires.
 fn own_triple() -> String {
     let arch = if cfg!(target_arch = "x86") { "i686" } else { env::consts::ARCH };
     let suffix = match () {
@@ -91,7 +91,7 @@ impl Target {
         if self.is_windows() { "exe" } else { "" }
     }
 
-    /// What else a program that links `library` needs, for compilers with gcc-style options.
+    /// Additional linker arguments for a program that uses `library`, for compilers with gcc-style options.
     pub fn link(&self, command: &mut Command, library: &Path, shared: bool) {
         command.arg("-pthread").arg(library);
         if self.is_windows() {

@@ -1,15 +1,15 @@
-//! The exact depth bound of a block of 8x4 pixels, and what a unit in the last place is.
+//! The exact depth bound of a block of 8x4 pixels, and the size of a unit in the last place.
 
 use super::{Triangle, UNIT, Vertex, area};
 
-/// 2^k, made of its bits: exact on every machine.
+/// 2^k, assembled from bits: exact on every machine.
 pub fn power(k: i32) -> f64 {
     assert!((-1022..=1023).contains(&k), "2^{k} is not a normal number");
     f64::from_bits(((1023 + i64::from(k)) as u64) << 52)
 }
 
-/// The distance of neighbouring f32 numbers at a positive `x`, which need not be one of them: 2^(e - 23) for
-/// 2^e <= x < 2^(e + 1).
+/// The distance between neighbouring f32 numbers at a positive `x`, which need not be one of them: 2^(e - 23) for 2^e
+/// <= x < 2^(e + 1).
 pub fn ulp(x: f64) -> f64 {
     assert!(x > 0.0 && x.is_finite(), "{x} has no unit in the last place");
     power(((x.to_bits() >> 52) as i32 - 1023).max(-126) - 23)
@@ -33,8 +33,8 @@ fn sum(a: f64, b: f64) -> (f64, f64) {
     (s, (a - (s - t)) + (b - t))
 }
 
-/// 1/w of the triangle's plane at a point given in units, with sums and products of twice the precision: beside a
-/// sliver large numbers cancel.
+/// 1/w of the triangle's plane at a point given in units, with sums and products in twice double precision: for slivers,
+/// large numbers cancel.
 pub fn plane_at(t: &Triangle, x: i64, y: i64) -> f64 {
     let edge = |a: &Vertex, b: &Vertex| (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
     let weights = [edge(&t[1], &t[2]), edge(&t[2], &t[0]), edge(&t[0], &t[1])];
@@ -51,21 +51,21 @@ pub fn plane_at(t: &Triangle, x: i64, y: i64) -> f64 {
     (total + rest) / area(t) as f64
 }
 
-/// The corners, in units, of the block of 8x4 pixels that holds a pixel.
+/// The corners, in units, of the block of 8x4 pixels that contains a pixel.
 pub fn block_corners(column: usize, row: usize) -> [(i64, i64); 4] {
     let (x, y) = (column as i64 / 8 * 8 * UNIT, row as i64 / 4 * 4 * UNIT);
     [(x, y), (x + 8 * UNIT, y), (x, y + 4 * UNIT), (x + 8 * UNIT, y + 4 * UNIT)]
 }
 
-/// The nearest depth that is right for the whole block of a pixel: the plane's least over the block's square, but no
-/// farther than the farthest vertex.
+/// The nearest valid depth for the whole block of a pixel: the plane's least value over the block, but no farther than
+/// the farthest vertex.
 pub fn block_bound(t: &Triangle, column: usize, row: usize) -> f64 {
     let farthest = t.iter().fold(f64::MAX, |m, v| m.min(v.z));
     block_corners(column, row).iter().fold(f64::MAX, |m, &(x, y)| m.min(plane_at(t, x, y))).max(farthest)
 }
 
-/// How far, in pixels, a pixel's centre lies inside of the nearest of the triangle's three lines; negative: outside,
-/// by the farthest of the lines that it is outside of.
+/// The signed distance, in pixels, from a pixel's centre to the triangle's edge lines: positive inside, to the nearest
+/// line; negative outside, to the farthest of the lines that it is outside of.
 pub fn inside_by(t: &Triangle, column: usize, row: usize) -> f64 {
     let (x, y) = (column as i64 * UNIT + UNIT / 2, row as i64 * UNIT + UNIT / 2);
     let turned = if area(t) < 0 { -1.0 } else { 1.0 };

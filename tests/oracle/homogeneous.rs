@@ -1,18 +1,18 @@
 //! Coverage and depth of a triangle that crosses the near plane, without clipping it: every pixel's ray
 //! is intersected with the triangle in homogeneous coordinates, in double.
 
-/// What a pixel centre is to a triangle.
+/// The position of a pixel centre relative to a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Farther inside than the tolerance, and beyond the near plane.
+    /// Inside by more than the tolerance, and beyond the near plane.
     Inside,
-    /// Closer to an edge, or to the near plane's trace, than the tolerance.
+    /// Within the tolerance of an edge or of the near plane's trace.
     Border,
-    /// Farther outside than the tolerance.
+    /// Outside by more than the tolerance.
     Outside,
 }
 
-/// A triangle as the barycentric weights over w that its pixels have, each affine in the pixel position.
+/// A triangle as the barycentric weights over w of a pixel, each affine in the pixel position.
 pub struct Homogeneous {
     /// Value at pixel position (0, 0), change along x, change along y: of the three weights, then of their sum, 1/w.
     terms: [[f64; 3]; 4],
@@ -22,7 +22,7 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// From clip-space (x, y, w); `y_up` counts rows from the bottom. None where it is edge-on.
+    /// From clip-space (x, y, w); `y_up` counts rows from the bottom. `None` if it is edge-on.
     pub fn new(v: &[[f64; 3]; 3], near: f64, size: (usize, usize), y_up: bool) -> Option<Self> {
         let cross = |a: &[f64; 3], b: &[f64; 3]| {
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -61,7 +61,7 @@ impl Homogeneous {
         self.terms[3][1].abs() + self.terms[3][2].abs()
     }
 
-    /// Where a pixel centre lies; `tolerance` in pixels.
+    /// The position of a pixel centre; `tolerance` in pixels.
     pub fn place(&self, column: usize, row: usize, tolerance: f64) -> Place {
         let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
         let mut place = Place::Inside;
@@ -84,20 +84,20 @@ impl Homogeneous {
         place
     }
 
-    /// How far, in pixels, a pixel's centre lies on the side of a line on which `value` is positive.
+    /// The signed distance, in pixels, from a pixel's centre to a line; positive on the side where `value` is.
     fn distance(value: f64, [_, dx, dy]: [f64; 3]) -> f64 {
         let slope = (dx * dx + dy * dy).sqrt();
         if slope > 0.0 { value / slope } else { f64::INFINITY.copysign(value) }
     }
 
-    /// How far, in pixels, a pixel's centre lies inside of the nearest of the three edges' lines. Negative: outside, by the
-    /// farthest of the lines that it is outside of.
+    /// The signed distance, in pixels, from a pixel's centre to the lines of the three edges: positive inside, to the
+    /// nearest line; negative outside, to the farthest of the lines that it is outside of.
     pub fn within_edges_by(&self, column: usize, row: usize) -> f64 {
         let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
         (0..3).fold(f64::INFINITY, |least, k| least.min(Self::distance(self.value(k, x, y), self.terms[k])))
     }
 
-    /// How far, in pixels, a pixel's centre lies from the near plane's trace, on the side that is seen.
+    /// The signed distance, in pixels, from a pixel's centre to the near plane's trace; positive on the visible side.
     pub fn beyond_near_by(&self, column: usize, row: usize) -> f64 {
         if self.near <= 0.0 {
             return f64::INFINITY;
@@ -105,12 +105,12 @@ impl Homogeneous {
         Self::distance(1.0 / self.near - self.depth(column, row), self.terms[3])
     }
 
-    /// The lesser of the two.
+    /// The smaller of the two.
     pub fn inside_by(&self, column: usize, row: usize) -> f64 {
         self.within_edges_by(column, row).min(self.beyond_near_by(column, row))
     }
 
-    /// The least 1/w of the plane over the block of 8x4 pixels that holds a pixel.
+    /// The least 1/w of the plane over the block of 8x4 pixels that contains a pixel.
     pub fn block_depth(&self, column: usize, row: usize) -> f64 {
         let (x, y) = ((column / 8 * 8) as f64, (row / 4 * 4) as f64);
         let corners = [(x, y), (x + 8.0, y), (x, y + 4.0), (x + 8.0, y + 4.0)];

@@ -1,16 +1,16 @@
-//! The exact answer, slowly, and without a line in common with the library.
+//! The exact answer, slow and sharing no code with the library.
 //!
-//! Triangles come in screen space: x and y in 1/256 pixel, y in the direction in which rows are
-//! counted (row 0 first), z = 1/w. Coverage is decided in 64-bit integers: a row is reached from its
-//! centre on or below the least y to strictly before the greatest; in a row, pixels run from the one
-//! whose centre is on or right of the left edge to the one strictly left of the right edge.
+//! Triangles are in screen space: x and y in 1/256 pixel, y in the direction in which rows are counted (row 0 first),
+//! and z = 1/w. Coverage is decided in 64-bit integers: a triangle covers the rows whose centre is at or after its least
+//! y and strictly before its greatest; in a row, it covers the pixels from the first one whose centre is on or to the
+//! right of the left edge to the last one strictly left of the right edge.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 pub mod bounds;
 pub mod homogeneous;
 pub mod snap;
 
-/// Subpixel units to a pixel.
+/// Subpixel units per pixel.
 pub const UNIT: i64 = 256;
 
 /// A snapped vertex.
@@ -23,8 +23,8 @@ pub struct Vertex {
 
 pub type Triangle = [Vertex; 3];
 
-/// The pixels from which on row `row` lies right of the edges of a closed polygon, in ascending order:
-/// filled are those from the first to before the second, from the third to before the fourth, ...
+/// The first pixels of row `row` to the right of the edges of a closed polygon, in ascending order: the pixels from the
+/// first up to the second are filled, those from the third up to the fourth, and so on.
 pub fn crossings(polygon: &[(i64, i64)], row: i64) -> Vec<i64> {
     let centre = row * UNIT + UNIT / 2;
     let mut found = Vec::new();
@@ -41,7 +41,7 @@ pub fn crossings(polygon: &[(i64, i64)], row: i64) -> Vec<i64> {
     found
 }
 
-/// The columns of `row`, of a screen `width` wide, whose centres the triangle covers.
+/// The columns of `row`, on a screen `width` pixels wide, whose centres the triangle covers.
 pub fn span(triangle: &Triangle, row: usize, width: usize) -> std::ops::Range<usize> {
     let corners = triangle.map(|v| (v.x, v.y));
     match crossings(&corners, row as i64)[..] {
@@ -53,13 +53,13 @@ pub fn span(triangle: &Triangle, row: usize, width: usize) -> std::ops::Range<us
     }
 }
 
-/// Twice the area, in units squared; positive when the corners run clockwise on a screen whose rows go down.
+/// Twice the area, in square units; positive if the corners run clockwise on a screen whose rows go down.
 pub fn area(t: &Triangle) -> i64 {
     (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[2].x - t[0].x) * (t[1].y - t[0].y)
 }
 
-/// 1/w of the triangle's plane at a point given in units. Within the triangle nothing cancels, and the
-/// result is off by a few parts in 10^16 at most.
+/// 1/w of the triangle's plane at a point given in units. Within the triangle nothing cancels, and the error is a few
+/// parts in 10^16 at most.
 pub fn depth_at(t: &Triangle, x: i64, y: i64) -> f64 {
     let edge = |a: &Vertex, b: &Vertex| (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
     let (e0, e1, e2) = (edge(&t[1], &t[2]), edge(&t[2], &t[0]), edge(&t[0], &t[1]));
@@ -71,9 +71,9 @@ pub fn depth_at_pixel(t: &Triangle, column: usize, row: usize) -> f64 {
     depth_at(t, column as i64 * UNIT + UNIT / 2, row as i64 * UNIT + UNIT / 2)
 }
 
-/// The least depth that a useful buffer stores for a pixel that the triangle alone covers: the plane's
-/// least value over the pixel's block of 8x4, but no farther than the triangle's farthest vertex. For
-/// thin triangles, whose planes are ill-conditioned, that vertex alone.
+/// The least depth that a useful buffer stores for a pixel that only this triangle covers: the plane's least value over
+/// the pixel's 8x4 block, but no farther than the triangle's farthest vertex. For thin triangles, whose planes are
+/// ill-conditioned, just that vertex.
 pub fn useful_depth(t: &Triangle, column: usize, row: usize) -> f64 {
     let farthest = t.iter().fold(f64::MAX, |m, v| m.min(v.z));
     let nearest = t.iter().fold(0.0, |m: f64, v| m.max(v.z));
@@ -83,7 +83,7 @@ pub fn useful_depth(t: &Triangle, column: usize, row: usize) -> f64 {
     if height < (2 * UNIT) as f64 {
         return farthest * 0.999;
     }
-    // Single precision holds the plane of a long triangle less well.
+    // Single precision represents the plane of a long triangle less accurately.
     let slack = nearest * (0.001 + 1e-5 * longest / height);
     let (x, y) = (column as i64 / 8 * 8 * UNIT, row as i64 / 4 * 4 * UNIT);
     let corners = [(x, y), (x + 8 * UNIT, y), (x, y + 4 * UNIT), (x + 8 * UNIT, y + 4 * UNIT)];
@@ -91,12 +91,12 @@ pub fn useful_depth(t: &Triangle, column: usize, row: usize) -> f64 {
     (block.max(farthest) - slack).max(farthest * 0.999)
 }
 
-/// An exact depth buffer: the nearest of all that was drawn, in any order.
+/// An exact depth buffer: the nearest depth of everything drawn, in any order.
 #[derive(Clone)]
 pub struct Oracle {
     pub width: usize,
     pub height: usize,
-    /// 1/w at the pixel centre, row by row, -1 where nothing was drawn.
+    /// 1/w at the pixel centre, row by row; -1 where nothing was drawn.
     pub depth: Vec<f64>,
 }
 
@@ -132,13 +132,13 @@ impl Oracle {
         }
     }
 
-    /// Would the triangle show at a pixel centre that it covers? Equal depth shows.
+    /// Would the triangle be visible at a pixel centre that it covers? Equal depth is visible.
     pub fn shows(&self, t: &Triangle) -> bool {
         self.rows(t)
             .any(|row| span(t, row, self.width).any(|c| depth_at_pixel(t, c, row) >= self.depth[row * self.width + c]))
     }
 
-    /// Would a point of the triangle's inside, given by weights that sum to 16, show in the pixel that holds it?
+    /// Would a point inside the triangle, given by weights that sum to 16, be visible in the pixel that contains it?
     pub fn shows_at(&self, t: &Triangle, weights: [i64; 3]) -> bool {
         let mix = |v: [i64; 3]| (0..3).map(|i| v[i] * weights[i]).sum::<i64>().div_euclid(16 * UNIT);
         let (column, row) = (mix(t.map(|v| v.x)), mix(t.map(|v| v.y)));
@@ -149,8 +149,8 @@ impl Oracle {
         depth >= self.depth[row as usize * self.width + column as usize]
     }
 
-    /// Would a rectangle at `depth`, given in pixels, show in one of the pixels that it overlaps by more than
-    /// what rounding can take away?
+    /// Would a rectangle at `depth`, given in pixels, be visible in one of the pixels that it overlaps by more than the
+    /// rounding error?
     pub fn rectangle_shows(&self, x: (f64, f64), y: (f64, f64), depth: f64) -> bool {
         let slack = 1e-3;
         let pixels = |(low, high): (f64, f64), size: usize| {

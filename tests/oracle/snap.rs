@@ -1,10 +1,10 @@
-//! Where a clip-space vertex lands on the grid of 1/256 pixel, if rounding to single precision on the way there leaves
-//! no doubt.
+//! The point of the 1/256-pixel grid on which a clip-space vertex lands, if rounding to single precision on the way
+//! leaves no doubt.
 
 use super::Vertex;
 
-/// The vertex on a screen of `size`; None where four roundings in f32 might put it on another point of the grid, or
-/// where it does not lie in front of the eye.
+/// The vertex on a screen of `size`; `None` if four roundings in f32 might put it on another grid point, or if it is
+/// not in front of the eye.
 pub fn snapped([x, y, _, w]: [f32; 4], size: (usize, usize), y_up: bool) -> Option<Vertex> {
     if w.is_nan() || w <= 0.0 {
         return None;
@@ -15,7 +15,7 @@ pub fn snapped([x, y, _, w]: [f32; 4], size: (usize, usize), y_up: bool) -> Opti
         let offset = f64::from(c) / f64::from(w) * half;
         let at = offset + half;
         let point = at.round_ties_even();
-        // 1/w, its product with the coordinate, that with half the screen, and the sum.
+        // 1/w, its product with the coordinate, the product with half the screen, and the sum.
         let exact = power_of_two && size.is_power_of_two();
         let scaled = if exact { 0.0 } else { 3.0 * offset.abs() };
         let summed = if exact && at == point && at.abs() < 16_777_216.0 { 0.0 } else { at.abs() };

@@ -1,5 +1,5 @@
-//! Small generated scenes, the same on every machine: integers, and IEEE operations that round one way only (no
-//! sines, no fused operations).
+//! Small generated scenes, the same on every machine: only integers and IEEE operations with a single correct rounding
+//! (no sines, no fused operations).
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 pub mod town;
@@ -13,7 +13,7 @@ impl Numbers {
         mixed(self.0)
     }
 
-    /// From 0 to 1, 1 excluded.
+    /// From 0 to 1, exclusive.
     pub fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / (1u64 << 24) as f32
     }
@@ -29,7 +29,7 @@ fn mixed(n: u64) -> u64 {
     b ^ (b >> 31)
 }
 
-/// Vertices x, y, z and one unused where there is a matrix, else clip space x, y, z, w; indices of each object.
+/// Vertices: x, y, z and an unused float with a matrix, else clip-space x, y, z, w. Indices of each object.
 pub struct Scene {
     pub name: &'static str,
     pub near: f32,
@@ -43,7 +43,7 @@ impl Scene {
         Self { name, near, matrix, vertices: Vec::new(), objects: Vec::new() }
     }
 
-    /// Clip space of a vertex, as plain as can be.
+    /// A vertex in clip space, computed in the plainest way.
     pub fn clip(&self, index: u32) -> [f32; 4] {
         let v = self.vertices[index as usize];
         match &self.matrix {
@@ -52,8 +52,8 @@ impl Scene {
         }
     }
 
-    /// The rectangle around an object in normalised device coordinates and its least w; where it reaches behind the
-    /// eye, the w that says so.
+    /// The rectangle around an object in normalised device coordinates and its least w; if it extends behind the eye, a
+    /// w that indicates this.
     pub fn rectangle(&self, object: &[u32]) -> [f32; 5] {
         let mut r = [f32::MAX, f32::MAX, -f32::MAX, -f32::MAX, f32::MAX];
         for &i in object {
@@ -79,7 +79,8 @@ impl Scene {
     }
 }
 
-/// A camera: w is the distance along the view direction, `zoom` the inverse tangent of half the angle of view upwards.
+/// A camera: w is the distance along the view direction; `zoom` is the inverse tangent of half the vertical field of
+/// view.
 fn look(eye: [f32; 3], target: [f32; 3], zoom: f32, aspect: f32) -> [f32; 16] {
     let normalised = |v: [f32; 3]| {
         let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
@@ -101,7 +102,7 @@ fn look(eye: [f32; 3], target: [f32; 3], zoom: f32, aspect: f32) -> [f32; 16] {
     matrix
 }
 
-/// Triangles of all sizes and depths, everywhere; some cross the near plane or the eye.
+/// Triangles of all sizes and depths, everywhere; some cross the near plane or the eye's plane.
 fn soup() -> Scene {
     let mut scene = Scene::new("soup", 0.25, None);
     let mut n = Numbers(31);
@@ -121,7 +122,7 @@ fn soup() -> Scene {
     scene
 }
 
-/// The same with what no program should pass: NaN, infinities, denormals, enormous numbers, w of zero.
+/// The same with values that no program should pass: NaN, infinities, denormals, enormous numbers, w = 0.
 fn hostile() -> Scene {
     const ODD: [f32; 12] = [
         f32::NAN,
@@ -141,7 +142,7 @@ fn hostile() -> Scene {
     scene.name = "hostile";
     scene.near = 0.0;
     let mut n = Numbers(41);
-    // Every other object stays as it was, so that the answers are not all the same.
+    // Every other object is unchanged, so that the answers are not all the same.
     for object in (1..120u64).step_by(2) {
         for _ in 0..10 {
             let vertex = &mut scene.vertices[(object * 60 + n.next() % 60) as usize];

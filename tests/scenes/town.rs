@@ -1,4 +1,4 @@
-//! The scenes that look like something: a town of boxes, a terrain, a world of blocks.
+//! The scenes that resemble real ones: a town of boxes, a terrain, a world of blocks.
 
 use super::{Numbers, Scene, look, mixed};
 
@@ -66,7 +66,7 @@ pub fn terrain() -> Scene {
     scene
 }
 
-/// Columns of unit cubes, only the faces that show, in chunks of 8 by 8 columns.
+/// Columns of unit cubes, visible faces only, in chunks of 8 by 8 columns.
 pub fn blocks() -> Scene {
     const SIDE: i32 = 48;
     let level = |x: i32, z: i32| {

@@ -1,4 +1,4 @@
-//! What the tests share: objects of every kind, clip-space vertices with an exact projection, reading back.
+//! Shared test code: objects of every kind, clip-space vertices with an exact projection, reading back.
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 pub mod triangles;
@@ -37,20 +37,20 @@ pub fn object(
     moc
 }
 
-/// One object of the default rule for each instruction set and row direction.
+/// One object with the default rule for each instruction set and row direction.
 pub fn objects(size: (usize, usize)) -> Vec<MaskedOcclusionCulling> {
     let all = Implementation::available();
     all.iter().flat_map(|&i| AXES.map(|axis| object(i, UpdateRule::ThreeLayer, axis, size))).collect()
 }
 
-/// Which object it is, for a failure's message.
+/// Identifies the object in failure messages.
 pub fn name(moc: &MaskedOcclusionCulling) -> String {
     format!("{:?} {:?} {:?} {:?}", moc.implementation(), moc.update_rule(), moc.y_axis(), moc.resolution())
 }
 
-/// The clip-space vertex (x, y, z, w) that lands on `v`. For sizes that are a power of two the projection is exact
-/// in f32 within 32,000 pixels; for others it is off by less than a third of a unit within 4,096 pixels, so that
-/// it snaps to `v` all the same.
+/// The clip-space vertex (x, y, z, w) that lands on `v`. For sizes that are a power of two the projection is exact in
+/// f32 within 32,000 pixels; for others the error is less than a third of a unit within 4,096 pixels, so that it still
+/// snaps to `v`.
 pub fn clip_vertex(v: &Vertex, size: (usize, usize), axis: YAxis) -> [f32; 4] {
     let half = (UNIT / 2) as f64;
     let (half_w, half_h) = (half * size.0 as f64, half * size.1 as f64);
@@ -85,19 +85,19 @@ pub fn test(moc: &MaskedOcclusionCulling, triangles: &[Triangle]) -> CullingResu
     moc.test_triangles(Vertices::clip_space(&vertices), &indices, &both_sides()).unwrap()
 }
 
-/// Draws both sides of clip-space vertices, three a triangle.
+/// Draws both sides of clip-space vertices, three per triangle.
 pub fn draw_clip(moc: &mut MaskedOcclusionCulling, vertices: &[[f32; 4]]) -> CullingResult {
     let indices: Vec<u32> = (0..vertices.len() as u32).collect();
     moc.render_triangles(Vertices::clip_space(vertices), &indices, &both_sides()).unwrap()
 }
 
-/// Tests both sides of clip-space vertices, three a triangle.
+/// Tests both sides of clip-space vertices, three per triangle.
 pub fn test_clip(moc: &MaskedOcclusionCulling, vertices: &[[f32; 4]]) -> CullingResult {
     let indices: Vec<u32> = (0..vertices.len() as u32).collect();
     moc.test_triangles(Vertices::clip_space(vertices), &indices, &both_sides()).unwrap()
 }
 
-/// One triangle, at w everywhere, that covers the whole screen.
+/// One triangle, with a constant w, that covers the whole screen.
 pub fn wall(w: f32) -> [[f32; 4]; 3] {
     [[-w, -w, 0.0, w], [3.0 * w, -w, 0.0, w], [-w, 3.0 * w, 0.0, w]]
 }
@@ -108,7 +108,7 @@ pub fn depth(moc: &MaskedOcclusionCulling) -> Vec<f32> {
     depth
 }
 
-/// Reads the depth of every pixel into a vector that is kept between calls.
+/// Reads the depth of every pixel into a vector that is reused between calls.
 pub fn read(moc: &MaskedOcclusionCulling, depth: &mut Vec<f32>) {
     let (w, h) = size_of(moc);
     depth.resize(w * h, f32::NAN);
@@ -120,13 +120,13 @@ pub fn bits(moc: &MaskedOcclusionCulling) -> Vec<u32> {
     depth(moc).iter().map(|d| d.to_bits()).collect()
 }
 
-/// Does a pixel say that nothing was drawn on it? NaN does not.
+/// Does the value mean that nothing was drawn on the pixel? NaN does not.
 pub fn is_empty(depth: f32) -> bool {
     depth < 0.0
 }
 
-/// Compares a buffer that holds one triangle with the exact answer: the same pixels, none nearer than the
-/// triangle is anywhere in its block of 8x4 pixels, none uselessly far.
+/// Compares a buffer that holds one triangle with the exact answer: the same pixels, none nearer than the triangle is
+/// anywhere in its 8x4 block, none uselessly far.
 pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), String> {
     let rows = oracle.rows(t);
     for (row, line) in depth.chunks_exact(oracle.width).enumerate() {
@@ -138,7 +138,8 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
         if let Some(column) = line[span.end..].iter().position(|d| !is_empty(*d)) {
             return Err(format!("covers ({}, {row}) falsely", span.end + column));
         }
-        // What holds for a whole block, which is most of the work: its number, the nearest and the farthest that is right.
+        // Cached for a whole block, since this is most of the work: its number, and the nearest and the farthest valid
+        // depth.
         let mut block = (usize::MAX, 0.0, 0.0);
         for column in span {
             let stored = f64::from(line[column]);
@@ -167,7 +168,7 @@ pub fn compare_one(t: &Triangle, depth: &[f32], oracle: &Oracle) -> Result<(), S
 /// Is every pixel of a buffer as far as the exact answer, or farther?
 pub fn conservative(depth: &[f32], oracle: &Oracle) -> Result<(), String> {
     for (i, (&stored, &exact)) in depth.iter().zip(&oracle.depth).enumerate() {
-        // A pixel on which nothing was drawn holds exactly the negative value that says so.
+        // A pixel on which nothing was drawn holds exactly the negative value that indicates this.
         let right = if exact < 0.0 { stored < 0.0 } else { f64::from(stored) <= exact * (1.0 + 1e-15) };
         if !right {
             let (x, y) = (i % oracle.width, i / oracle.width);
@@ -177,12 +178,13 @@ pub fn conservative(depth: &[f32], oracle: &Oracle) -> Result<(), String> {
     Ok(())
 }
 
-/// How many times the usual number of cases to run: TEST_EFFORT, 1 when it is not set. Another effort runs other cases.
+/// How many times the usual number of cases to run: TEST_EFFORT, or 1 if it is not set. Another effort runs different
+/// cases.
 fn effort() -> u32 {
     std::env::var("TEST_EFFORT").map_or(1, |n| n.parse().expect("TEST_EFFORT is a number"))
 }
 
-/// Runs a property on the same cases every time, and shows the smallest that fails.
+/// Runs a property on the same cases every time, and shows the smallest failing one.
 pub fn check<S: proptest::strategy::Strategy>(
     cases: u32,
     seed: u64,

@@ -1,4 +1,4 @@
-//! Random triangles of every kind that is known to be hard, on the 1/256-pixel grid, with w a power of two.
+//! Random triangles of every kind known to be hard, on the 1/256-pixel grid, with w a power of two.
 
 use proptest::prelude::*;
 
@@ -21,11 +21,11 @@ pub enum Kind {
     MixedScale,
     PartlyOff,
     FarOff,
-    /// Corners on the screen and up to 240,000 pixels from it, where f32 still holds every eighth unit.
+    /// Corners on the screen and up to 240,000 pixels from it, where f32 can still represent every eighth unit.
     Wide,
 }
 
-/// How far from the middle of the screen, in units, a vertex may lie for its projection to be exact.
+/// How far from the middle of the screen, in units, a vertex may be for its projection to be exact.
 fn reach(size: usize) -> i64 {
     if size.is_power_of_two() { 32_000 * UNIT - UNIT / 2 * size as i64 } else { 4_096 * UNIT }
 }
@@ -38,7 +38,7 @@ fn three(
     [point.clone(), point.clone(), point]
 }
 
-/// Corners of a kind, not yet kept within reach.
+/// Corners of a kind, not yet limited to that distance.
 fn corners(kind: Kind, (w, h): (usize, usize)) -> BoxedStrategy<[(i64, i64); 3]> {
     let (w, h) = (w as i64, h as i64);
     let (mx, my) = (w * UNIT, h * UNIT);

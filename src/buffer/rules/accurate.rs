@@ -1,5 +1,5 @@
-//! The accurate rule, after Andersson, Hasselgren, Akenine-Möller, "Masked Depth Culling for Graphics
-//! Hardware", 2015: of the reference, the working layer and the triangle, the two closest in depth merge.
+//! The accurate rule, after Andersson, Hasselgren, Akenine-Möller, "Masked Depth Culling for Graphics Hardware", 2015:
+//! of the reference, the working layer and the triangle, the two that are closest in depth are merged.
 
 use super::{Inserted, Planes, Rule, live, two_plane_layout};
 use crate::buffer::BLOCK;
@@ -8,7 +8,7 @@ use crate::simd::Simd;
 pub(crate) struct Accurate;
 
 impl Accurate {
-    /// The depth of the empty layer that a full one leaves.
+    /// The depth of the empty layer left behind by a full one.
     #[inline(always)]
     fn left_behind<S: Simd>(_: S, depth: S::F) -> S::F {
         depth
@@ -21,29 +21,29 @@ impl Rule for Accurate {
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near: z1, near: mask, .. } = *planes;
-        // Pixels of the layer that are nearer already learn nothing.
+        // Pixels of the layer that are already nearer gain nothing.
         let nearer_is_triangle = s.lt(z1, depth);
         let c = s.select_i(nearer_is_triangle, c, s.and_not(mask, c));
         let live = live(s, z0, c, depth);
-        // Nothing is left of the layer when the triangle covers it.
+        // Nothing of the layer remains if the triangle covers it.
         let gone = s.and_m(nearer_is_triangle, s.eq_i(s.and_not(c, mask), s.i(0)));
         let both = s.or(mask, c);
         let farther = s.min(z1, depth);
-        // Together they cover everything: the farther one becomes the reference, the nearer one stays.
+        // Together they cover everything: the farther one becomes the reference, and the nearer one stays.
         let full = s.and_m(live, s.eq_i(both, s.i(-1)));
         let triangle_to_layer = s.abs(s.sub(depth, z1));
         let layer_to_reference = s.sub(z1, z0);
-        // A triangle is not lost to an empty reference.
+        // A triangle is never dropped in favour of an empty reference.
         let vacant = s.eq(z0, s.f(0.0));
         let triangle_to_reference = s.select(vacant, s.f(f32::MAX), s.sub(depth, z0));
         let closest =
             s.and_m(s.lt(layer_to_reference, triangle_to_layer), s.le(layer_to_reference, triangle_to_reference));
         let replace = s.or_m(gone, closest);
         let join = s.and_not_m(replace, s.le(triangle_to_layer, triangle_to_reference));
-        // Otherwise the triangle is closest to the reference and is lost to it.
+        // Otherwise the triangle is closest to the reference and is dropped.
         let z = s.select(replace, depth, s.select(join, farther, z1));
         let m = s.select_i(replace, c, s.select_i(join, both, mask));
-        // A layer that is full by itself has nothing in front of it to keep.
+        // A layer that is full by itself leaves nothing in front of it to keep.
         let z_kept = s.max(z1, depth);
         let m_kept = s.select_i(nearer_is_triangle, c, mask);
         let alone = s.eq_i(m_kept, s.i(-1));

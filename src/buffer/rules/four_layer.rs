@@ -1,15 +1,15 @@
-//! The four-layer rule: a reference depth and three nested working layers, for scenes where many things at many depths
-//! meet in 8x4 pixels and are drawn in no order.
+//! The four-layer rule: a reference depth and three nested working layers, for scenes in which many surfaces at
+//! different depths meet within 8x4 pixels and are drawn unsorted.
 //!
-//! It is the three-layer rule with one layer more, and the same reasoning. A triangle makes a fourth layer for a moment, and one of
-//! the four goes: the farthest into the reference if all of them together cover every pixel; otherwise the one whose loss
-//! costs least depth. The farthest is lost to the reference, a nearer one is merged into the next behind it, whose pixels
-//! hold its own already since the masks are nested, and one without pixels of its own costs nothing. An empty layer is
-//! kept as a full one at the reference depth, so there are no special cases.
+//! It works like the three-layer rule with one more layer. A triangle temporarily makes a fourth layer, and one of the
+//! four is removed: if together they cover every pixel, the farthest becomes the reference; otherwise the one whose
+//! loss costs the least depth goes. The farthest is lost to the reference; a nearer one is merged into the next one
+//! behind it, whose pixels already include its own because the masks are nested; one without pixels of its own costs
+//! nothing. An empty layer is stored as a full one at the reference depth, so there are no special cases.
 //!
-//! What it buys is time to fill: a sub-tile that is covered by four or more small pieces has to give up depth before it is full
-//! with two layers, and often not with three. It costs 8 bytes a sub-tile, and two planes to load and store in each tile drawn
-//! into. A fifth layer adds little. The figures are in `docs/rules.md`.
+//! It gives sub-tiles more time to fill: with two layers, and often with three, a sub-tile covered by four or more
+//! small pieces has to give up depth before it is full. It costs 8 bytes per sub-tile, and two more planes to load and
+//! store in each tile drawn into. A fifth layer adds little. Figures are in `docs/rules.md`.
 
 use super::{Inserted, Planes, Rule, behind_layer};
 use crate::buffer::BLOCK;
@@ -61,7 +61,7 @@ impl Rule for FourLayer {
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near, z_mid, z_far, near, mid, far } = *planes;
-        // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the reference.
+        // A lane without pixels inserts behind everything, which has no effect; so does a depth behind the reference.
         let t = s.select(s.eq_i(c, s.i(0)), s.f(0.0), depth);
         let nearer_than_near = s.lt(z_near, t);
         let nearer_than_mid = s.lt(z_mid, t);
@@ -75,7 +75,7 @@ impl Rule for FourLayer {
         let z_b = s.max_positive(z_mid, s.min_positive(z_near, t));
         let z_c = s.max_positive(z_far, s.min_positive(z_mid, t));
         let z_d = s.min_positive(z_far, t);
-        // What is lost by dropping each: the depth down to the next, nothing where the next has the same pixels.
+        // The loss from dropping each: the depth down to the next layer, or nothing if that has the same pixels.
         let nothing = s.f(0.0);
         let loss_a = s.sub(z_a, z_b);
         let loss_b = s.select(s.eq_i(mask_b, mask_a), nothing, s.sub(z_b, z_c));
@@ -87,7 +87,7 @@ impl Rule for FourLayer {
         let keep_d = s.and_not_m(full_d, s.lt(s.min(loss_a, loss_bc), loss_d));
         let drop_a = s.and_m(keep_d, s.le(loss_a, loss_bc));
         let drop_a_or_b = s.and_m(keep_d, s.le(s.min(loss_a, loss_b), loss_c));
-        // The nearest full layer: where a nearer one is full, those behind it are.
+        // The nearest full layer: if a layer is full, so are those behind it.
         let nearest_full = s.select(s.eq_i(mask_c, full), z_c, z_d);
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, nearest_full);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
@@ -113,7 +113,8 @@ impl Rule for FourLayer {
             if !s.all(s.lt(z_near, depth)) {
                 return false;
             }
-            // What `insert` makes of it: every layer moves back by one, and nothing hides behind any of them any more.
+            // The result that `insert` would give: every layer moves back by one, and nothing remains hidden behind any
+            // of them.
             let z_mid = s.load_f(p.add(2 * BLOCK).cast());
             let full = s.i(-1);
             let planes =

@@ -1,5 +1,5 @@
-//! Update rules: how the sub-tiles of a tile take in a triangle and how they answer a query. A rule is one file and one line of
-//! [`with_rule`].
+//! Update rules: how the sub-tiles of a tile record a triangle and how they answer a query. A rule is one file and one
+//! line of [`with_rule`].
 
 mod accurate;
 mod four_layer;
@@ -15,7 +15,7 @@ pub(crate) use three_layer::ThreeLayer;
 
 use crate::simd::Simd;
 
-/// Evaluates an expression with `$R` as the type of an update rule: the only place that tells one rule from another.
+/// Evaluates an expression with `$R` as the type of an update rule: the only place that distinguishes the rules.
 macro_rules! with_rule {
     ($rule:expr, $R:ident => $body:expr) => {
         $crate::buffer::rules::with_rule!(@ $rule, $R => $body;
@@ -35,10 +35,9 @@ macro_rules! with_rule {
 }
 pub(crate) use with_rule;
 
-/// The sub-tiles of a tile, one a lane. `z0` is the reference depth: no pixel is farther. The near layer
-/// speaks for the pixels in `near`, which are at least as near as `z_near`; so does the far layer (of the rules with three and
-/// four layers) and the one between (four layers). The layers are nested: the near pixels are among the middle ones, and
-/// those among the far ones.
+/// The sub-tiles of a tile, one per lane. `z0` is the reference depth: no pixel is farther. The pixels in `near` are at
+/// least as near as `z_near`; the far layer (three- and four-layer rules) and the middle layer (four-layer rule) work
+/// the same way. The layers are nested: the near pixels are among the middle ones, and those among the far ones.
 pub(crate) struct Planes<S: Simd> {
     pub z0: S::F,
     pub z_near: S::F,
@@ -49,7 +48,7 @@ pub(crate) struct Planes<S: Simd> {
     pub far: S::I,
 }
 
-/// What taking in a triangle did, a lane each.
+/// The effect of inserting a triangle, per lane.
 pub(crate) struct Inserted<S: Simd> {
     /// The triangle covers a pixel here and is nearer than the reference depth was.
     pub live: S::M,
@@ -62,10 +61,11 @@ pub(crate) trait Rule {
     const PLANES: usize;
     /// How many of `layers` there are.
     const LAYERS: usize;
-    /// For each layer in front of the reference: the planes of its mask and of its depth. Plane 0 is the reference depth.
+    /// For each layer in front of the reference: the planes of its mask and of its depth. Plane 0 is the reference
+    /// depth.
     const LAYER_PLANES: &[(usize, usize)];
 
-    /// A tile into which nothing was drawn.
+    /// A tile into which nothing has been drawn.
     fn empty<S: Simd>(s: S) -> Planes<S>;
 
     /// # Safety
@@ -73,41 +73,41 @@ pub(crate) trait Rule {
     unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S>;
 
     /// # Safety
-    /// As [`Self::load`], to be written.
+    /// As [`Self::load`], but for writing.
     unsafe fn store<S: Simd>(s: S, p: *mut u32, planes: &Planes<S>);
 
-    /// Takes in the pixels `coverage`, each at least as near as `depth`. Afterwards no stored bound is
-    /// nearer than what was drawn.
+    /// Inserts the pixels `coverage`, each at least as near as `depth`. Afterwards no stored bound is nearer than what
+    /// was drawn.
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, coverage: S::I, depth: S::F) -> Inserted<S>;
 
-    /// Takes in all pixels at `depth` without reading all that is there, if that depth is nearer than all of it. False:
-    /// it is not, and nothing was done.
+    /// Inserts all pixels at `depth` without reading the whole tile, if that depth is nearer than everything in it.
+    /// Returns false, having done nothing, if it is not.
     ///
     /// # Safety
     /// As [`Self::store`].
     unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool;
 
-    /// Lanes in which something at `depth` or farther, in the pixels `touched`, is certainly hidden.
-    /// Lanes that touch no pixel are hidden.
+    /// Lanes in which anything at `depth` or farther, in the pixels `touched`, is certainly hidden. Lanes that touch no
+    /// pixel count as hidden.
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M;
 
-    /// The layers from far to near, to be taken in by another buffer; those beyond `LAYERS` are nothing.
+    /// The layers from far to near, for insertion into another buffer; those beyond `LAYERS` are empty.
     fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 4];
 }
 
-/// Lanes where `coverage` holds a pixel and `depth` is nearer than `z0`.
+/// Lanes in which `coverage` has a pixel and `depth` is nearer than `z0`.
 #[inline(always)]
 pub(super) fn live<S: Simd>(s: S, z0: S::F, coverage: S::I, depth: S::F) -> S::M {
     s.and_not_m(s.eq_i(coverage, s.i(0)), s.lt(z0, depth))
 }
 
-/// Lanes hidden by a layer: `touched` is inside of its pixels and `depth` is farther than it.
+/// Lanes hidden by a layer: `touched` is a subset of its pixels, and `depth` is farther.
 #[inline(always)]
 pub(super) fn behind_layer<S: Simd>(s: S, touched: S::I, depth: S::F, mask: S::I, z: S::F) -> S::M {
     s.and_m(s.eq_i(s.and_not(mask, touched), s.i(0)), s.lt(depth, z))
 }
 
-/// Loads and stores of the two rules that keep one working layer, in `near`.
+/// Loads and stores of the two rules that have one working layer, in `near`.
 macro_rules! two_plane_layout {
     () => {
         const PLANES: usize = 3;
@@ -146,7 +146,7 @@ macro_rules! two_plane_layout {
                 if !s.all(s.and_m(s.lt(z0, depth), s.lt(z_near, depth))) {
                     return false;
                 }
-                // What the rule makes of it: everything is the reference, and the layer is empty.
+                // The result that the rule would give: the reference covers everything, and the layer is empty.
                 let planes = Planes { z0: depth, z_near: Self::left_behind(s, depth), ..Self::empty(s) };
                 Self::store(s, p, &planes);
                 true

@@ -1,5 +1,5 @@
-//! The quick rule: Hasselgren, Andersson, Akenine-Möller, "Masked Software Occlusion Culling", HPG 2016,
-//! section 3.2. One working layer; a triangle that is far in front of it starts a new one.
+//! The quick rule: Hasselgren, Andersson, Akenine-Möller, "Masked Software Occlusion Culling", HPG 2016, section 3.2.
+//! One working layer; a triangle far in front of it starts a new one.
 
 use super::{Inserted, Planes, Rule, live, two_plane_layout};
 use crate::buffer::BLOCK;
@@ -8,7 +8,7 @@ use crate::simd::Simd;
 pub(crate) struct Quick;
 
 impl Quick {
-    /// The depth of the empty layer that a full one leaves.
+    /// The depth of the empty layer left behind by a full one.
     #[inline(always)]
     fn left_behind<S: Simd>(s: S, _: S::F) -> S::F {
         s.f(0.0)
@@ -22,11 +22,11 @@ impl Rule for Quick {
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near: z1, near: mask, .. } = *planes;
         let live = live(s, z0, c, depth);
-        // A jump in depth means another object: the layer gives way to it.
-        // But nothing gives way while the reference is empty, for then it would be lost to nothing.
+        // A jump in depth means another object, so the layer is replaced. But not while the reference is empty, because
+        // then the layer would be lost for nothing.
         let jump = s.lt(s.sub(z1, z0), s.sub(depth, z1));
         let discard = s.and_m(s.lt(s.f(0.0), z0), jump);
-        // A triangle that covers everything by itself needs nothing of the layer.
+        // A triangle that covers everything by itself does not need the layer.
         let alone = s.or_m(s.eq_i(mask, s.i(0)), s.eq_i(c, s.i(-1)));
         let anew = s.or_m(discard, alone);
         let z = s.select(anew, depth, s.min(z1, depth));

@@ -1,5 +1,5 @@
-//! The rules on random sub-tiles: no bound is nearer than what was drawn, layers are nested and in order, queries answer by
-//! them, and the rules with several layers do what a plain model of them does.
+//! The rules on random sub-tiles: no bound is nearer than what was drawn, layers are nested and ordered, queries agree
+//! with them, and the rules with several layers match a plain model.
 
 use core::marker::PhantomData;
 
@@ -9,11 +9,11 @@ use super::{Accurate, FourLayer, Quick, Rule, ThreeLayer};
 use crate::buffer::BLOCK;
 use crate::simd::{Job, Level, Simd, run};
 
-/// As many lanes as the widest vector has.
+/// As many lanes as the widest vector.
 const N: usize = BLOCK;
 const FULL: u32 = u32::MAX;
 
-/// What comes to sixteen sub-tiles: pixels at a depth, and a question about others.
+/// The input to sixteen sub-tiles: pixels at a depth, and a query of other pixels.
 struct Step {
     mask: [u32; N],
     depth: [f32; N],
@@ -21,7 +21,7 @@ struct Step {
     asked: [f32; N],
 }
 
-/// What there is afterwards: the layers from far to near, and what the rule said, a bit for each sub-tile.
+/// The result: the layers from far to near, and the rule's answers, a bit per sub-tile.
 struct Seen {
     layers: Vec<[(u32, f32); N]>,
     merged: u32,
@@ -50,7 +50,7 @@ impl<R: Rule> Job for Sequence<'_, R> {
         for step in self.steps {
             let mut seen = Seen { layers: vec![[(0, 0.0); N]; R::LAYERS], merged: 0, hidden: 0 };
             for first in (0..N).step_by(S::LANES) {
-                // SAFETY: arrays of N lanes, planes of N words, and a vector from `first` on lies inside of both.
+                // SAFETY: arrays of N lanes, planes of N words, and a vector starting at `first` is inside both.
                 unsafe {
                     let p = memory.0.as_mut_ptr().add(first);
                     let (mask, depth) =
@@ -81,7 +81,7 @@ impl<R: Rule> Job for Sequence<'_, R> {
     }
 }
 
-/// Pixels as triangles leave them, and others.
+/// Masks such as triangles leave, and others.
 fn mask(random: &mut Rng) -> u32 {
     match random.u8(..6) {
         0 => FULL,
@@ -93,7 +93,7 @@ fn mask(random: &mut Rng) -> u32 {
     }
 }
 
-/// Few values, so that many are equal, or any.
+/// Few distinct values, so that many are equal, or arbitrary ones.
 fn depth(random: &mut Rng) -> f32 {
     if random.bool() { random.u8(1..12).into() } else { random.f32() * 8.0 + f32::MIN_POSITIVE }
 }
@@ -112,7 +112,7 @@ fn steps(random: &mut Rng) -> Vec<Step> {
     (0..random.usize(1..30)).map(|_| of(random)).collect()
 }
 
-/// Sequences on every instruction set.
+/// Runs sequences on every instruction set.
 fn sequences<R: Rule>(check: impl Fn(&[Step], &[Seen])) {
     for level in Level::all() {
         let mut random = Rng::with_seed(1);
@@ -142,7 +142,7 @@ fn keeps_its_promises<R: Rule>() {
                     assert!(pair[1].0 & !pair[0].0 == 0 && pair[0].1 <= pair[1].1, "{layers:?} from far to near");
                 }
                 assert!(layers[0].1 >= reference, "the reference fell");
-                // The accurate rule says so, too, where it rose to what it was.
+                // The accurate rule also reports this when the reference rose to its previous value.
                 assert!(seen.merged >> lane & 1 != 0 || layers[0].1 == reference, "{layers:?}");
                 reference = layers[0].1;
                 let (touched, asked) = (step.touched[lane], step.asked[lane]);
@@ -173,14 +173,14 @@ fn four_layers_keep_their_promises() {
     keeps_its_promises::<FourLayer>();
 }
 
-/// A sub-tile as the rules with several layers are described: a reference depth, and layers from near to far.
+/// A sub-tile as the multi-layer rules are specified: a reference depth, and layers from near to far.
 struct Model {
     reference: f32,
     layers: Vec<(u32, f32)>,
 }
 
 impl Model {
-    /// Takes in pixels at a depth, and gives up the layer whose loss costs least depth.
+    /// Inserts pixels at a depth, and gives up the layer whose loss costs the least depth.
     fn insert(&mut self, mask: u32, depth: f32) {
         let depth = if mask == 0 { 0.0 } else { depth };
         let at = self.layers.iter().position(|layer| layer.1 < depth).unwrap_or(self.layers.len());
@@ -199,7 +199,7 @@ impl Model {
             let behind = if k == last { self.reference } else { self.layers[k + 1].1 };
             if k > 0 && self.layers[k - 1].0 == mask { 0.0 } else { z - behind }
         };
-        // Of equal ones the farthest, otherwise the nearest.
+        // On a tie the farthest layer goes, or else the nearest of those with equal losses.
         let least = (0..last).reduce(|a, b| if loss(b) < loss(a) { b } else { a }).unwrap_or(last);
         let dropped = if loss(last) <= loss(least) { last } else { least };
         self.layers.remove(dropped);

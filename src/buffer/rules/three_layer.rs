@@ -1,8 +1,8 @@
 //! The three-layer rule, the default: a reference depth and two nested working layers.
 //!
-//! A triangle makes a third layer for a moment; of the three, the one whose loss costs least depth is
-//! dropped (the farthest is lost to the reference, a nearer one is merged into the next behind it). An empty layer
-//! is kept as a full one at the reference depth, so there are no special cases.
+//! A triangle temporarily makes a third layer; of the three, the one whose loss costs the least depth is dropped (the
+//! farthest is lost to the reference, a nearer one is merged into the next one behind it). An empty layer is stored as
+//! a full one at the reference depth, so there are no special cases.
 
 use super::{Inserted, Planes, Rule, behind_layer};
 use crate::buffer::BLOCK;
@@ -51,9 +51,9 @@ impl Rule for ThreeLayer {
     #[inline(always)]
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, c: S::I, depth: S::F) -> Inserted<S> {
         let Planes { z0, z_near, z_far, near, far, .. } = *planes;
-        // A lane without pixels inserts behind everything, which changes nothing; so does a depth behind the
-        // reference. Nothing here waits for which lanes are alive: triangles that follow each other often meet in the same tile,
-        // and the next one waits for what this one stores.
+        // A lane without pixels inserts behind everything, which has no effect; so does a depth behind the reference.
+        // Nothing here depends on which lanes are alive: consecutive triangles often meet in the same tile, and the
+        // next one has to wait for the values stored here.
         let t = s.select(s.eq_i(c, s.i(0)), s.f(0.0), depth);
         let nearer_than_near = s.lt(z_near, t);
         let nearer_than_far = s.lt(z_far, t);
@@ -64,7 +64,7 @@ impl Rule for ThreeLayer {
         let z_a = s.max_positive(z_near, t);
         let z_b = s.max_positive(z_far, s.min_positive(z_near, t));
         let z_c = s.min_positive(z_far, t);
-        // What is lost by dropping each: the depth down to the next, nothing where the next has the same pixels.
+        // The loss from dropping each: the depth down to the next layer, or nothing if that has the same pixels.
         let loss_a = s.sub(z_a, z_b);
         let loss_b = s.select(s.eq_i(mask_b, mask_a), s.f(0.0), s.sub(z_b, z_c));
         let loss_c = s.select(s.eq_i(mask_c, mask_b), s.f(0.0), s.sub(z_c, z0));
@@ -72,7 +72,7 @@ impl Rule for ThreeLayer {
         let full_c = s.eq_i(mask_c, full);
         let drop_c = s.or_m(full_c, s.le(loss_c, s.min(loss_a, loss_b)));
         let drop_a = s.and_not_m(drop_c, s.le(loss_a, loss_b));
-        // The nearest full layer: where a nearer one is full, those behind it are.
+        // The nearest full layer: if a layer is full, so are those behind it.
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
         let risen = s.select(full_c, s.max_positive(z0, nearest_full), z0);
@@ -96,7 +96,8 @@ impl Rule for ThreeLayer {
             if !s.all(s.lt(z_near, depth)) {
                 return false;
             }
-            // What `insert` makes of it: the near layer becomes the far one, and nothing hides behind it any more.
+            // The result that `insert` would give: the near layer becomes the far one, and nothing remains hidden
+            // behind it.
             let full = s.i(-1);
             let planes = Planes { z0: depth, z_near: depth, z_far: z_near, near: full, far: full, ..Self::empty(s) };
             Self::store(s, p, &planes);
