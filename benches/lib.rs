@@ -1,6 +1,7 @@
 //! What benches and tools share: objects, scenes in an order, and drawing them.
 
 #[path = "../tests/scenes/mod.rs"]
+#[allow(clippy::should_implement_trait, reason = "a generator of numbers that never ends is no iterator")]
 pub mod scenes;
 
 use fastrand::Rng;
