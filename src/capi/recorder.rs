@@ -258,8 +258,8 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
 /// sizeof(MOC_RecordedCall) before the call. The memory that its pointers refer to belongs to the recording and is
 /// freed with it.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too small; nothing
-/// is written.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too
+/// small; nothing is written.
 ///
 /// # Safety
 /// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
