@@ -35,8 +35,7 @@ enum Shape {
 }
 
 impl Shape {
-    /// The shape for an order; a setting that culls exactly as much as the best instruction set on one thread is a
-    /// cross.
+    /// The shape for an order. Other instruction sets and more threads, which cull exactly the same, are crosses.
     fn of(setting: &Setting) -> Self {
         if setting.threads > 1 || setting.isa != best_isa() { Self::Cross } else { setting.order.into() }
     }

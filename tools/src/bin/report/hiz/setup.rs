@@ -4,7 +4,7 @@ use super::lanes::{COUNT, Lanes, MOST};
 use super::list::TriangleList;
 use super::screen::{Screen, pixels};
 
-/// Values for lanes outside no edge, and beyond every edge.
+/// A distance beyond everything, for lanes that are outside no edge.
 const FAR: f32 = 1e9;
 
 /// The data needed to fill triangles, one triangle per lane. Edge functions are in units of grid steps times pixels,

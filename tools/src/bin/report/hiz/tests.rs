@@ -67,7 +67,8 @@ fn draw(hiz: &mut Hiz, vertices: &[[f32; 4]]) {
     hiz.raster();
 }
 
-/// Triangles from a size of `size` of the screen up, near and far; some reach behind the eye or far off the screen.
+/// Triangles with corners up to `size` (in NDC) from a random point, near and far; some reach behind the eye or far off
+/// screen.
 fn triangles(random: &mut Rng, n: usize, size: f32) -> Vec<[f32; 4]> {
     let mut vertices = Vec::new();
     for _ in 0..n {
