@@ -73,11 +73,11 @@ impl Args {
     pub fn check_record(&self) -> crate::Result<()> {
         let Some(file) = &self.record else { return Ok(()) };
         if self.recording().is_some() {
-            return Err("--record needs a scene: what is played is recorded already".into());
+            return Err("--record needs a scene: a recording cannot be recorded again".into());
         }
         match file.parent() {
             Some(folder) if folder != Path::new("") && !folder.is_dir() => {
-                Err(format!("--record {}: there is no folder {}", file.display(), folder.display()).into())
+                Err(format!("--record {}: the folder {} does not exist", file.display(), folder.display()).into())
             }
             _ => Ok(()),
         }
@@ -106,9 +106,7 @@ impl Args {
             camera.look += camera.sideways();
         }
         if !camera.is_upright() {
-            return Err(
-                "the camera looks along --up: give another direction as --up, or another --eye or --look".into()
-            );
+            return Err("the camera looks along --up: choose another --up, --eye or --look".into());
         }
         Ok(camera)
     }
@@ -130,7 +128,7 @@ fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse::<f32>()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(Vec3::new(x, y, z)),
-        _ => Err("three numbers with commas between them are expected, as in 1,2.5,-3".into()),
+        _ => Err("expected three numbers separated by commas, as in 1,2.5,-3".into()),
     }
 }
 

@@ -61,13 +61,13 @@ pub fn read_outcome(path: &Path, objects: usize, (width, height): (u32, u32)) ->
     let (fates, depth) = bytes.split_at_checked(objects).ok_or("the result is cut short")?;
     let (depth, rest) = depth.as_chunks();
     if depth.len() != width as usize * height as usize || !rest.is_empty() {
-        return Err("the result has another size than the buffer".into());
+        return Err("the result and the buffer differ in size".into());
     }
     let fate = |byte: &u8| match byte {
         0 => Ok(Fate::Visible),
         1 => Ok(Fate::Culled),
         3 => Ok(Fate::Outside),
-        _ => Err(format!("{byte} is no culling result")),
+        _ => Err(format!("{byte} is not a culling result")),
     };
     Ok(Outcome {
         fates: fates.iter().map(fate).collect::<std::result::Result<_, _>>()?,

@@ -29,7 +29,7 @@ fn from_uri(uri: &str, folder: &Path) -> Result<Vec<u8>> {
         return Ok(base64(text).ok_or("a buffer's base64 is broken")?);
     }
     if let Some((scheme, _)) = uri.split_once(':') {
-        return Err(format!("a buffer lies at a {scheme} address: only files beside the scene are read").into());
+        return Err(format!("a buffer is at a {scheme} address: only local files next to the scene are read").into());
     }
     let path = folder.join(percent_decoded(uri).ok_or("a buffer's address is broken")?);
     fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()).into())

@@ -37,7 +37,7 @@ fn read(path: &Path) -> Result<(Scene, usize)> {
     let mut scene = match ending.as_str() {
         "obj" => obj(reader, folder),
         "gltf" | "glb" => gltf(reader, folder),
-        _ => Err("the file is none of .obj, .gltf, .glb and .mocrec".into()),
+        _ => Err("not a .obj, .gltf, .glb or .mocrec file".into()),
     }
     .map_err(|e| format!("{}: {e}", path.display()))?;
     bar.finish_and_clear();
@@ -47,7 +47,7 @@ fn read(path: &Path) -> Result<(Scene, usize)> {
         let reason = if dropped > 0 {
             "all its triangles have a vertex that is not a finite number"
         } else {
-            "there are no triangles in it"
+            "it contains no triangles"
         };
         return Err(format!("{}: {reason}", path.display()).into());
     }

@@ -52,7 +52,7 @@ fn run(args: &Args) -> Result<()> {
     let list = |v: glam::Vec3| v.to_array().map(|n| n.to_string()).join(",");
     say(format_args!("camera: --eye {} --look {}\n", list(camera.eye), list(camera.look)));
 
-    fs::create_dir_all(&args.out).map_err(|e| format!("cannot make {}: {e}", args.out.display()))?;
+    fs::create_dir_all(&args.out).map_err(|e| format!("cannot create {}: {e}", args.out.display()))?;
     // The program's files are deleted once the pictures are written. Not every system allows programs to run in its
     // temporary folder.
     let folder = tempfile::tempdir_in(path::absolute(&args.out)?)?;
@@ -74,7 +74,7 @@ fn run(args: &Args) -> Result<()> {
     command.arg(&scene_file).arg(&result_file);
     command.arg(args.isa.map_or("-".into(), |isa| (isa as i32).to_string()));
     command.args(&args.record);
-    let running = format!("running it at {}x{}", args.size.0, args.size.1);
+    let running = format!("running at {}x{}", args.size.0, args.size.1);
     say(step(&running, || Ok(native::run(&mut command)?))?);
     let outcome = exchange::read_outcome(&result_file, scene.objects.len(), args.size)?;
 

@@ -42,12 +42,12 @@ pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let mut depth = vec![0.0; width as usize * height as usize];
     moc.compute_pixel_depth_buffer(&mut depth, false)?;
     if let Some(folder) = options.picture.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        std::fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     }
     depth_picture(&depth, recording.resolution, reduced(recording.resolution)).save(&options.picture)?;
     say(&format!("depths: {}", options.picture.display()));
     if differ > 0 {
-        Err(format!("{differ} answers differ from those recorded (by another update rule? See --rule)").into())
+        Err(format!("{differ} results differ from the recorded ones (was another update rule used? See --rule)").into())
     } else {
         Ok(())
     }

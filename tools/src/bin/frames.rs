@@ -36,6 +36,6 @@ fn main() -> Result<(), String> {
         moc.clear_buffer();
         view.draw(&mut moc);
     }
-    println!("{} triangles a frame, {:?}", view.triangles(), moc.implementation());
+    println!("{} triangles per frame, {:?}", view.triangles(), moc.implementation());
     Ok(())
 }

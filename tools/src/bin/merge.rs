@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     bar.finish_and_clear();
     if falsely > 0 {
-        return Err(format!("{falsely} boxes were culled that are not hidden").into());
+        return Err(format!("{falsely} boxes were culled although they are not hidden").into());
     }
     Ok(())
 }

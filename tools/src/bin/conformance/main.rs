@@ -76,7 +76,7 @@ fn with(args: &Args, driver: &mut dyn Driver, kinds: &[Kind], tallies: &mut [Tal
     println!("{api}, rows {axis:?}: {}", driver.name());
     let bits = driver.subpixel_bits();
     if i64::from(bits) < i64::from(UNIT.ilog2()) {
-        return Err(format!("{bits} bits of subpixels do not hold the grid of 1/256").into());
+        return Err(format!("{bits} subpixel bits cannot represent the grid of 1/256").into());
     }
     let sizes = args.sizes();
     let bar = ProgressBar::new(sizes.iter().map(|s| s.1).sum()).with_style(ProgressStyle::with_template(
@@ -90,7 +90,7 @@ fn with(args: &Args, driver: &mut dyn Driver, kinds: &[Kind], tallies: &mut [Tal
         compare(driver, view, (kinds, seed, count), tallies, &bar)?;
     }
     bar.finish_and_clear();
-    println!("{bits} bits of subpixels, seed {}, {:.0} s", args.seed, start.elapsed().as_secs_f64());
+    println!("{bits} subpixel bits, seed {}, {:.0} s", args.seed, start.elapsed().as_secs_f64());
     Ok(())
 }
 

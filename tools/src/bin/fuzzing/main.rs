@@ -67,11 +67,11 @@ fn main() -> std::process::ExitCode {
         }
     }
     let seconds = start.elapsed().as_secs_f64();
-    println!("seed {}: {tally}, {:.0} calls a second, no failure", arguments.seed, tally.calls as f64 / seconds);
+    println!("seed {}: {tally}, {:.0} calls per second, no failure", arguments.seed, tally.calls as f64 / seconds);
     std::process::ExitCode::SUCCESS
 }
 
 #[cfg(not(unix))]
 fn main() {
-    println!("fuzzing needs the memory protection of a Unix system");
+    println!("fuzzing needs Unix memory protection");
 }

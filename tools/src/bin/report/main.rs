@@ -79,7 +79,7 @@ fn run(args: &Args) -> Result<()> {
         _ => Extent::Usual,
     };
     if let Some(folder) = args.out.parent() {
-        fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     }
     let mut subjects = if args.only_files { Vec::new() } else { Subject::generated() };
     for file in &args.files {
@@ -101,7 +101,7 @@ fn run(args: &Args) -> Result<()> {
     match (found.falsely(), found.other_bits()) {
         (0, 0) => Ok(()),
         (falsely, bits) => {
-            Err(format!("{falsely} falsely culled, {bits} buffers with other bits than they should have").into())
+            Err(format!("{falsely} falsely culled, {bits} buffers whose bits differ from what they should be").into())
         }
     }
 }

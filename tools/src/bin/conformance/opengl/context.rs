@@ -38,7 +38,7 @@ impl Context {
         let wanted = |name: &str| name.contains("opengl") && part.is_none_or(|p| name.contains(&p.to_lowercase()));
         let software = |name: &str| ["llvmpipe", "softpipe", "swrast"].iter().any(|s| name.contains(s));
         let best = seen.iter().filter(|(_, name)| wanted(name)).min_by_key(|(_, name)| software(name));
-        let &(index, _) = best.ok_or_else(|| format!("no OpenGL device that was asked for; there are: {seen:?}"))?;
+        let &(index, _) = best.ok_or_else(|| format!("no matching OpenGL device; available: {seen:?}"))?;
         Self::on_device(index)?.ok_or_else(|| "the device is gone".into())
     }
 

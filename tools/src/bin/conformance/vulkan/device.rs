@@ -126,5 +126,5 @@ fn choose(instance: &Instance, part: Option<&str>) -> Result<(vk::PhysicalDevice
     }
     let best = found.into_iter().min_by_key(|f| f.0);
     best.map(|(_, physical, family)| (physical, family))
-        .ok_or_else(|| format!("no Vulkan device that was asked for and fits; there are: {seen:?}").into())
+        .ok_or_else(|| format!("no matching Vulkan device; available: {seen:?}").into())
 }
