@@ -18,6 +18,6 @@ fn main() {
         is_identifier,
         "{PREFIX} is {prefix:?}: a prefix consists of letters, digits and underscores, and does not start with a digit"
     );
-    // Set also when it is empty: a name is a literal, which the source cannot make of an absent variable.
+    // Set even when empty: the exported name is a literal, which the source cannot form from an unset variable.
     println!("cargo:rustc-env={PREFIX}={prefix}");
 }

@@ -1,4 +1,4 @@
-//! A frame by way of triangle lists: bin all objects, then draw the bins, in one thread.
+//! A frame drawn with triangle lists: all objects are binned, then the bins are drawn, on one thread.
 
 use benches::{HEIGHT, Order, WIDTH, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

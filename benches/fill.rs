@@ -1,14 +1,14 @@
-//! Random right triangles of one size a run, front to back and back to front: what a pixel costs.
+//! Random right triangles of one size per run, front to back and back to front: the cost of a pixel.
 
 use benches::{HEIGHT, RULES, WIDTH};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use masked_occlusion_culling::{BackfaceWinding, DrawOptions, Vertices};
 
-/// Legs in pixels.
+/// Length of the legs in pixels.
 const SIZES: [u32; 9] = [2, 5, 10, 20, 40, 80, 150, 300, 500];
 
-/// Enough triangles to cover the screen some times over, nearest first.
+/// Enough triangles to cover the screen several times, nearest first.
 fn triangles(size: u32) -> (Vec<[f32; 4]>, Vec<u32>) {
     let count = (8 * WIDTH * HEIGHT / (size * size)).clamp(100, 20_000);
     let mut rng = Rng::with_seed(u64::from(size));

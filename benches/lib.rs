@@ -1,4 +1,4 @@
-//! What benches and tools share: objects, scenes in an order, and drawing them.
+//! Shared by benches and tools: objects, scenes in an order, and drawing them.
 
 #[path = "../tests/scenes/mod.rs"]
 #[allow(clippy::should_implement_trait, reason = "a generator of numbers that never ends is no iterator")]
@@ -21,7 +21,7 @@ pub const RULES: [(&str, UpdateRule); 4] = [
     ("four-layer", UpdateRule::FourLayer),
 ];
 
-/// An object of a size that engines use, or one larger, on the best instruction set.
+/// A buffer of a size that engines use, or one larger, on the best instruction set.
 pub fn object(update_rule: UpdateRule) -> MaskedOcclusionCulling {
     MaskedOcclusionCulling::new(WIDTH, HEIGHT, Settings::default().with_update_rule(update_rule))
         .expect("the size is accepted")
@@ -32,7 +32,7 @@ pub fn object(update_rule: UpdateRule) -> MaskedOcclusionCulling {
 pub enum Order {
     /// Nearest first, as an engine should.
     Near,
-    /// Any, the same at every run.
+    /// Random, but the same in every run.
     Random,
 }
 
@@ -59,7 +59,7 @@ impl View {
         Vertices::model_space(&self.positions, self.matrix)
     }
 
-    /// Sets the near plane and draws all objects; the buffer is as it was before.
+    /// Sets the near plane and draws all objects, without clearing the buffer.
     pub fn draw(&self, moc: &mut MaskedOcclusionCulling) {
         moc.set_near_clip_plane(self.near).expect("a number");
         let vertices = self.model_space();
@@ -68,7 +68,7 @@ impl View {
         }
     }
 
-    /// A frame by a pool, whose object has the near plane: clears, draws all objects and flushes.
+    /// Draws a frame with a pool whose object already has the near plane: clears, draws all objects and flushes.
     pub fn pool_frame(&self, pool: &CullingThreadpool) {
         let vertices = self.model_space();
         pool.scope(|scope| {
@@ -80,7 +80,7 @@ impl View {
     }
 }
 
-/// The generated scenes in an order.
+/// The generated scenes, sorted into an order.
 pub fn views(order: Order) -> Vec<View> {
     [town::town(), town::terrain(), town::blocks()].into_iter().map(|scene| view(scene, order)).collect()
 }

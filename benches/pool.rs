@@ -1,4 +1,4 @@
-//! A frame drawn by the pool of threads, beside the same frame drawn directly: clear, draw, flush.
+//! A frame drawn by a thread pool, compared with the same frame drawn directly: clear, draw, flush.
 
 use benches::{Order, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

@@ -1,4 +1,4 @@
-//! Queries: rectangles from small to the whole screen, hidden and visible, and hidden meshes.
+//! Queries: rectangles from small to full-screen, hidden and visible, and hidden meshes.
 
 use benches::{HEIGHT, Order, RULES, WIDTH, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -49,7 +49,7 @@ fn test_triangles(c: &mut Criterion) {
         for (name, rule) in RULES {
             let mut moc = benches::object(rule);
             moc.set_near_clip_plane(view.near).expect("a number");
-            // Right behind the near plane: everything is hidden, and every triangle is looked at.
+            // Just behind the near plane: everything is hidden, so every triangle is tested.
             benches::draw_wall(&mut moc, view.near);
             let vertices = view.model_space();
             group.bench_function(BenchmarkId::new(view.name, name), |b| {

@@ -1,4 +1,4 @@
-//! Whole frames: a clear and every object of a scene, by scene, order and rule; and by instruction set.
+//! Whole frames: a clear and every object of a scene, by scene, order and update rule; and by instruction set.
 
 use benches::{ORDERS, Order, RULES, views};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

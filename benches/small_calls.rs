@@ -1,4 +1,4 @@
-//! Boxes of twelve triangles, a call each: what a call costs before it draws anything.
+//! Boxes of twelve triangles, one per call: the fixed cost of a call.
 
 use benches::RULES;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -10,7 +10,7 @@ const BOXES: usize = 500;
 const BOX: [u32; 36] =
     [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
-/// Boxes strewn in a view whose w is z.
+/// Boxes scattered over a view whose w is z.
 fn boxes() -> Vec<[[f32; 3]; 8]> {
     let mut rng = Rng::with_seed(3);
     (0..BOXES)
@@ -51,7 +51,7 @@ fn small_calls(c: &mut Criterion) {
             });
         });
     }
-    // Out of view: nothing but the front end.
+    // Outside the view: only the front end runs.
     let mut moc = benches::object(UpdateRule::ThreeLayer);
     let away: Vec<[[f32; 4]; 8]> = clip.iter().map(|b| b.map(|[x, y, z, w]| [x + 3.0 * w, y, z, w])).collect();
     group.bench_function("outside", |b| {

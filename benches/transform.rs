@@ -1,4 +1,4 @@
-//! Vertices by a matrix, from packed positions and from structures of arrays.
+//! Transforms vertices by a matrix, from packed positions and from structures of arrays.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;

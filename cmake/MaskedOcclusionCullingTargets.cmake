@@ -1,15 +1,15 @@
-# Defines the targets, for the build tree (CMakeLists.txt) and for the installed package (MaskedOcclusionCullingConfig),
-# which say where things are:
+# Defines the targets for the build tree (CMakeLists.txt) and for the installed package (MaskedOcclusionCullingConfig),
+# which set these variables:
 #   _moc_include   the folder of the headers
 #   _moc_static    the archive; empty if it is not there
 #   _moc_shared    the shared library; empty if it is not there
 #   _moc_import    its import library (Windows)
-#   _moc_soname    the name that programs will look for (not Windows)
-#   _moc_native    the libraries of the system that the archive needs
+#   _moc_soname    the file name recorded in programs, by which the loader finds the library (not Windows)
+#   _moc_native    the system libraries that the archive needs
 #   _moc_definitions  what programs must define: MOC_SYMBOL_PREFIX, if there is a prefix
 #   _moc_scope     GLOBAL or nothing
-# They hold for every configuration: what cargo built does not depend on whether the program is for debugging.
-# With MSVC Rust always takes the release C runtime, so programs that link the archive need /MD in debug builds, too.
+# They apply to every configuration, because cargo's build does not depend on the program's build type.
+# With MSVC Rust always uses the release C runtime, so programs that link the archive need /MD in debug builds, too.
 
 if(_moc_static)
     add_library(MaskedOcclusionCulling::MaskedOcclusionCulling_static STATIC IMPORTED ${_moc_scope})

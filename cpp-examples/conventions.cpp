@@ -1,6 +1,6 @@
 // One wall and six boxes through the conventions of OpenGL, Direct3D and Vulkan, and through every vertex layout: the
 // same pixels and the same answers each time. docs/conventions.md quotes from here. The assertion on layouts is off,
-// because the trap below is demonstrated.
+// because the pitfall below is demonstrated.
 #define MOC_CHECK_LAYOUT 0
 #include "MaskedOcclusionCulling.h"
 
@@ -59,7 +59,7 @@ static Matrix ReversedInfinite() {
     }};
 }
 
-// Makes y of clip space point up where it points down, as in Vulkan.
+// Flips y, for clip spaces in which it points down, as in Vulkan.
 static Matrix TurnY(Matrix m) {
     for (int i : {1, 5, 9, 13}) m[i] = -m[i];
     return m;
@@ -80,7 +80,7 @@ static Matrix Product(const Matrix &first, const Matrix &second) {
     return p;
 }
 
-// For meshes whose fronts are counter-clockwise. A model matrix that mirrors turns the winding round.
+// For meshes with counter-clockwise front faces. A mirroring model matrix reverses the winding.
 static Moc::BackfaceWinding Backfaces(const Matrix &m) {
     const float determinant = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
                               m[2] * (m[4] * m[9] - m[5] * m[8]);
@@ -117,7 +117,7 @@ static Place ProjectBox(const Matrix &m, const Box &box, float nearW, Rect &r) {
     return before == 8 ? Place::Rectangle : Place::NearPlane;
 }
 
-// The answer for a box.
+// The culling result for a box.
 static Moc::CullingResult TestBox(const Moc *moc, const Matrix &m, const Box &box) {
     Rect r;
     switch (ProjectBox(m, box, moc->GetNearClipPlane(), r)) {
@@ -128,8 +128,8 @@ static Moc::CullingResult TestBox(const Moc *moc, const Matrix &m, const Box &bo
     return moc->TestRect(r.xmin, r.ymin, r.xmax, r.ymax, r.wmin);
 }
 
-// An orthographic view has the same w everywhere, which is no depth. With z from 0 (near) to 1 (far) this makes 2 - z
-// the depth: linear on the screen, as it is in such a view. Drawn and tested without a matrix.
+// In an orthographic view w is the same everywhere, so it cannot serve as depth. With z from 0 (near) to 1 (far), this
+// makes 2 - z the depth: linear on the screen, as depth is in such a view. Drawn and tested without a matrix.
 static std::array<float, 4> FromOrthographic(float x, float y, float z) {
     const float w = 1 / (2 - z);
     return {{x * w, y * w, 0, w}};
@@ -137,7 +137,7 @@ static std::array<float, 4> FromOrthographic(float x, float y, float z) {
 
 static const int kWidth = 320, kHeight = 180;
 static std::vector<float> reference;  // the pixels of the first convention
-static std::string expected;          // and its answers
+static std::string expected;          // and its results
 static bool failed = false;
 
 static std::string Text(Moc::CullingResult result) {
@@ -251,7 +251,7 @@ static void Layouts(Moc *moc) {
         moc->RenderTriangles(l.x, kCounterClockwise, 2, l.matrix, Moc::BACKFACE_CW, Moc::CLIP_PLANE_ALL, l.layout);
         Check(l.what, moc, m, -1);
     }
-    // The trap: the default layout, (16, 4, 12), with a matrix takes the 1 for z, and the wall is behind the eye.
+    // The pitfall: with a matrix, the default layout (16, 4, 12) reads the 1 as z, and the wall is behind the eye.
     const Moc::CullingResult lost = moc->RenderTriangles(xyz1.data(), kCounterClockwise, 2, m.data());
     Say("x, y, z, 1 with the default layout", lost == Moc::VIEW_CULLED, Text(lost));
 }

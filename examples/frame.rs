@@ -1,4 +1,4 @@
-//! A frame as an engine has it: meshes with matrices, a thread pool that draws occluders, boxes that are tested.
+//! A frame as in an engine: meshes with matrices, a thread pool that draws occluders, boxes that are tested.
 
 use masked_occlusion_culling::{
     CullingResult, CullingThreadpool, DrawOptions, Error, MaskedOcclusionCulling, Settings, ThreadpoolSettings,
@@ -12,16 +12,16 @@ fn main() -> Result<(), Error> {
     pool.set_near_clip_plane(0.1)?;
     pool.wake_threads();
 
-    // A wall 10 before the camera, which looks along -z: w is -z. Column by column.
+    // A wall 10 units in front of the camera, which looks along -z: w is -z. The matrix is column by column.
     let view_projection = [1.0, 0.0, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, -0.2, 0.0];
     let positions = [[-3.0, -3.0, -10.0], [3.0, -3.0, -10.0], [3.0, 3.0, -10.0], [-3.0, 3.0, -10.0]];
     let wall = Vertices::model_space(&positions, view_projection);
 
-    // Each frame. Draws return at once, and all of them are done when the scope ends.
+    // Each frame: draws return at once, and all of them are done when the scope ends.
     pool.clear_buffer()?;
     pool.scope(|scope| scope.render_triangles(wall, &[0, 1, 2, 0, 2, 3], &DrawOptions::default()))?;
 
-    // Objects by the rectangle around their box on the screen and the w of its nearest corner.
+    // Objects are tested by their screen rectangle and the w of the nearest corner of their box.
     for (name, x, w) in [("crate", 0.0, 12.0), ("barrel", 0.0, 6.0), ("tree", 0.7, 12.0)] {
         let hidden = pool.test_rect(x - 0.05, -0.1, x + 0.05, 0.1, w)? != CullingResult::Visible;
         println!("{name}: {}", if hidden { "hidden" } else { "draw it" });

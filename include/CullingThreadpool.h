@@ -59,14 +59,15 @@ public:
     typedef MaskedOcclusionCulling::VertexLayout VertexLayout;
 
     /**
-     * numThreads: threads besides those that call; 0 is allowed, and where there are fewer processors besides the
-     * caller's, there are fewer threads, but one at least. binsW times binsH: the pieces into which the screen is cut;
-     * there are no more than four per thread, and none is smaller than 128x64 pixels. maxJobs: how many calls' arrays may still
-     * be read when RenderTriangles returns; beyond that the caller does work until it holds again. Small calls are gathered
-     * into batches of at most half as many, so a larger maxJobs makes them cheaper. numProcessors: 0 asks the system.
+     * numThreads: threads besides the calling ones; may be 0. If there are fewer processors besides the caller's, fewer
+     * threads are started, but at least one. binsW times binsH: the bins that the screen is divided into; there are at
+     * most four per thread, and none is smaller than 128x64 pixels. maxJobs: how many calls' arrays may still be read
+     * when RenderTriangles returns; beyond that the caller helps until this is so again. Small calls are gathered into
+     * batches of at most half as many, so a larger maxJobs makes them cheaper. numProcessors: 0 means as many as the
+     * system reports.
      *
-     * Without bins or jobs (0) there is one. Where the system starts no more threads, or for more than 1024, the pool has
-     * none, and Flush does the work.
+     * If a number of bins or maxJobs is 0, 1 is used. If the system cannot start the threads, or numThreads is above
+     * 1024, the pool has no threads, and Flush does the work.
      */
     CullingThreadpool(unsigned int numThreads, unsigned int binsW, unsigned int binsH, unsigned int maxJobs = 32,
                       unsigned int numProcessors = 0)
@@ -86,24 +87,24 @@ public:
             MOC_ThreadpoolCreate(0, 1, 1, 32, 0, &mPool);
     }
 
-    /** Draws what was submitted, and ends the threads. */
+    /** Draws everything submitted, and ends the threads. */
     ~CullingThreadpool() { MOC_ThreadpoolDestroy(mPool); }
 
     CullingThreadpool(const CullingThreadpool &) = delete;
     CullingThreadpool &operator=(const CullingThreadpool &) = delete;
 
-    /** Lets the threads work. */
+    /** Wakes the threads, so that they draw what is submitted. */
     void WakeThreads() { MOC_ThreadpoolWakeThreads(mPool); }
 
-    /** Draws what was submitted, then puts the threads to sleep. */
+    /** Draws everything submitted, then puts the threads to sleep. */
     void SuspendThreads() { MOC_ThreadpoolSuspendThreads(mPool); }
 
-    /** Waits until everything that was submitted is drawn. */
+    /** Waits until everything submitted is drawn. */
     void Flush() { MOC_ThreadpoolFlush(mPool); }
 
     /**
-     * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system. False:
-     * nothing is pending that is not already being worked on.
+     * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system.
+     * Returns false if nothing is pending that is not already being worked on.
      */
     bool WorkOnce()
     {
@@ -138,12 +139,12 @@ public:
     }
 
     /**
-     * Draws into this object from now on, once what was submitted before is drawn. The object keeps its near plane. An object
-     * that belongs to another pool is refused.
+     * Draws into this object from now on, once everything submitted before is drawn. The object keeps its near plane.
+     * An object that belongs to another pool is refused.
      */
     void SetBuffer(MaskedOcclusionCulling *moc) { MOC_ThreadpoolSetBuffer(mPool, moc); }
 
-    /** SetResolution of the object, after what was submitted is drawn. No thread may query the object itself meanwhile. */
+    /** SetResolution of the object, once everything submitted is drawn. No thread may query the object itself meanwhile. */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {
         MOC_DetailAllocation<MOC_DETAIL_EXCEPTIONS != 0> allocation;
@@ -154,10 +155,10 @@ public:
     /** Flush, then SetNearClipPlane of the object. */
     void SetNearClipPlane(float nearDist) { MOC_ThreadpoolSetNearClipPlane(mPool, nearDist); }
 
-    /** The matrix of this thread's later calls, which is copied; null: the vertices are in clip space. */
+    /** Sets the matrix of this thread's later calls, which is copied; null: the vertices are in clip space. */
     void SetMatrix(const float *modelToClipMatrix = nullptr) { MOC_ThreadpoolSetMatrix(mPool, modelToClipMatrix); }
 
-    /** The vertex layout of this thread's later calls. With a matrix the third offset is that of z. */
+    /** Sets the vertex layout of this thread's later calls. With a matrix the third offset is that of z. */
     void SetVertexLayout(const VertexLayout &vtxLayout = VertexLayout(16, 4, 12))
     {
         const MOC_VertexLayout plain = {vtxLayout.mStride, vtxLayout.mOffsetY, vtxLayout.mOffsetW};
@@ -185,7 +186,7 @@ public:
         MOC_ThreadpoolRenderMesh(mPool, &described.mesh);
     }
 
-    /** Tests a rectangle against what is drawn by now; see MaskedOcclusionCulling::TestRect. */
+    /** Tests a rectangle against what has been drawn so far; see MaskedOcclusionCulling::TestRect. */
     CullingResult TestRect(float xmin, float ymin, float xmax, float ymax, float wmin)
     {
         int32_t result = MOC_VISIBLE;
@@ -193,7 +194,7 @@ public:
         return static_cast<CullingResult>(result);
     }
 
-    /** Tests triangles against what is drawn by now; see MaskedOcclusionCulling::TestTriangles. */
+    /** Tests triangles against what has been drawn so far; see MaskedOcclusionCulling::TestTriangles. */
     CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                 BackfaceWinding bfWinding = MaskedOcclusionCulling::BACKFACE_CW,
                                 ClipPlanes clipPlaneMask = MaskedOcclusionCulling::CLIP_PLANE_ALL)
@@ -222,8 +223,8 @@ public:
     }
 
     /**
-     * Folds other buffers into the pool's, in order with the calls around it, with the result of MergeBuffer one by one. They stay
-     * as they are until Flush. Not in the library that this header replaces.
+     * Merges other buffers into the pool's, in order with the calls before and after it, with the result of MergeBuffer
+     * for each of them. They must stay unchanged until Flush. Intel's library has no such method.
      */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
@@ -250,7 +251,7 @@ private:
             mesh.vertices = inVtx;
             mesh.vertex_count = MOC_UNCHECKED;
             mesh.indices = inTris;
-            /* A negative number is refused, as one above INT32_MAX. */
+            /* A negative count is refused, because it becomes one above INT32_MAX. */
             mesh.triangle_count = static_cast<uint32_t>(nTris);
             mesh.model_to_clip = modelToClipMatrix;
             mesh.layout = &layout;

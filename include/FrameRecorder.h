@@ -1,10 +1,10 @@
 /*
- * CPU occlusion culling on a masked hierarchical depth buffer: recorded frames, to be played again.
+ * CPU occlusion culling on a masked hierarchical depth buffer: recorded frames, for playback.
  *
- * MaskedOcclusionCulling::RecorderStart and RecorderStop write a file of what an object was told and what it answered;
- * FrameRecording::Load reads it. Both are always there, whatever MOC_RECORDER_ENABLE and
- * MOC_RECORDER_ENABLE_PLAYBACK say, and cost a load and a branch a call while nothing is recorded. The file format is that of the library
- * that this header stands in for; docs/recordings.md has it to the byte.
+ * MaskedOcclusionCulling::RecorderStart and RecorderStop write an object's calls and their results to a file;
+ * FrameRecording::Load reads it. Both are always available, whatever MOC_RECORDER_ENABLE and
+ * MOC_RECORDER_ENABLE_PLAYBACK are, and cost a load and a branch per call while nothing is recorded. The file format is
+ * that of Intel's library; docs/recordings.md specifies it byte by byte.
  *
  * Header-only over the C functions of masked_occlusion_culling.h. C++11. Load throws only what std::vector throws when
  * there is no memory.
@@ -27,27 +27,27 @@ extern "C++" {
 
 MOC_NAMESPACE_BEGIN
 
-/** A recorded frame, or several. */
+/** One or more recorded frames. */
 struct FrameRecording
 {
     /** Triangles that were drawn or tested. */
     struct TrianglesEntry
     {
-        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 where none is known */
-        std::vector<float> mVertices;                         /**< as mVertexLayout says */
-        std::vector<unsigned int> mTriangles;                 /**< three indices a triangle */
-        float mModelToClipMatrix[16];                         /**< zeros without one */
+        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 if not known */
+        std::vector<float> mVertices;                         /**< in the layout mVertexLayout */
+        std::vector<unsigned int> mTriangles;                 /**< three indices per triangle */
+        float mModelToClipMatrix[16];                         /**< zeros if there is none */
         MaskedOcclusionCulling::BackfaceWinding mbfWinding;
         MaskedOcclusionCulling::VertexLayout mVertexLayout;
         MaskedOcclusionCulling::ClipPlanes mClipPlaneMask;
         bool mHasModelToClipMatrix;
-        bool mHasScissorRect; /**< false: no file says so */
+        bool mHasScissorRect; /**< always false: the file format has no scissor rectangle */
     };
 
     /** A rectangle that was tested. */
     struct RectEntry
     {
-        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 where none is known */
+        MaskedOcclusionCulling::CullingResult mCullingResult; /**< -1 if not known */
         float mXMin;
         float mYMin;
         float mXMax;
@@ -67,17 +67,20 @@ struct FrameRecording
     unsigned int mResolutionWidth = 0;
     unsigned int mResolutionHeight = 0;
 
-    /** Forgets everything. */
+    /** Removes everything. */
     void Reset() { *this = FrameRecording(); }
 
-    /** Reads a file. False, and an empty recording, where it cannot be read, is none, or is cut or broken. */
+    /**
+     * Reads a file. Returns false, and an empty recording, if it cannot be read, is not a recording, or is truncated or
+     * corrupt.
+     */
     static bool Load(const char *inputFilePath, FrameRecording &outRecording)
     {
         outRecording.Reset();
         MOC_Recording *recording = nullptr;
         if (MOC_RecordingLoad(inputFilePath, &recording) != MOC_STATUS_OK)
             return false;
-        /* Also when a vector throws. */
+        /* Frees the recording even if a vector throws. */
         const Guard guard = {recording};
         MOC_RecordingInfo info = {};
         info.size = sizeof(info);

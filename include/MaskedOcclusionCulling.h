@@ -5,31 +5,31 @@
  * compiler. C++11. Nothing here throws, except that Create and SetResolution rethrow what an allocation callback throws,
  * leaving the object unchanged.
  *
- * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is
- * 1/w: 0 is infinitely far, larger is nearer. The same triangle is drawn by the same pixels on every
- * instruction set. docs/conventions.md has matrices, vertex layouts, Direct3D, OpenGL and Vulkan worked out;
- * docs/migrating.md all that differs from the library that this header stands in for. The head of
- * masked_occlusion_culling.h says more of units, ranges, and who owns what.
+ * Conventions. Clip space is (x, y, w): x right, y up, w away from the eye and positive in view. Depth is 1/w: 0 is
+ * infinitely far, larger is nearer. Every instruction set gives the same bits. docs/conventions.md explains matrices,
+ * vertex layouts, Direct3D, OpenGL and Vulkan; docs/migrating.md lists every difference from Intel's library, whose
+ * header this one replaces. The comment at the top of masked_occlusion_culling.h has more on units, ranges and
+ * ownership.
  *
- * Wrong input. Pointers must be null or valid. Where an argument is refused (a null pointer that has to name
- * something, a negative count, a size outside of 1 to 16384, a missing buffer, an enumeration without that
- * value), a method that returns nothing does nothing, a query and a draw answer VISIBLE, and a number that is
- * asked for is 0. Nothing is printed or thrown. GetLastStatus returns the status of the thread's last call; to learn which
- * argument was wrong and why, pass SetMessageCallback a function:
+ * Invalid input. Pointers must be null or valid. If an argument is refused (a required pointer is null, a count is
+ * negative, a size is outside 1 to 16384, there is no buffer, an enumeration has no such value), a method without a
+ * result does nothing, a query or a draw returns VISIBLE, and a method that returns a number returns 0. Nothing is
+ * printed or thrown. GetLastStatus returns the status of the thread's last call; to learn which argument was wrong and
+ * why, pass SetMessageCallback a function:
  *
  *     static void Say(void *, int, const char *message) { std::fprintf(stderr, "%s\n", message); }
  *     MaskedOcclusionCulling::SetMessageCallback(Say);
  *     // MOC_RenderTriangles: no buffer: call MOC_SetResolution first
  *
- * Indices are trusted: RenderTriangles, TestTriangles and BinTriangles read every vertex from the lowest to the
- * highest index of the call, whether or not an index names it, and of vertices of 12 or 16 bytes with y at 4 and
- * w (or z) at 8 or 12 all that lies between. All of that has to be readable. For other indices the C functions
- * whose names end in Checked take the length of the vertices, and refuse.
+ * Indices are trusted: RenderTriangles, TestTriangles and BinTriangles read every vertex from the lowest to the highest
+ * index of the call, whether or not an index refers to it; of vertices of 12 or 16 bytes with y at 4 and w (or z) at 8
+ * or 12 they also read everything in between. All of that must be readable. For untrusted indices, the C functions
+ * whose names end in Checked take the length of the vertex array and refuse indices beyond it.
  *
- * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run at once on several threads while
- * nobody draws; RenderTrilist may on rectangles that do not overlap. Different objects are independent. While a
- * CullingThreadpool draws into an object, any thread may query it, and calls that change or copy its buffer wait for the pool
- * first.
+ * Threads. TestRect, TestTriangles, BinTriangles and the Get methods may run on several threads at once while nobody
+ * draws; RenderTrilist may, in rectangles that do not overlap. Different objects are independent. While a
+ * CullingThreadpool draws into an object, any thread may query it; calls that change or copy its buffer first wait for
+ * the pool.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -46,29 +46,29 @@ extern "C++" {
 #include "masked_occlusion_culling.h"
 
 /*
- * Switches, to be defined before the include or on the command line. They are settings of the objects that
- * Create makes in the translation unit, and may differ between translation units:
+ * Switches, to be defined before the include or on the command line. They are settings of the objects that Create makes
+ * in this translation unit, and may differ between translation units:
  *
  * QUICK_MASK        1: the update rule of "Masked Software Occlusion Culling"; 0: that of "Masked Depth
- *                   Culling for Graphics Hardware"; not defined: three layers, accurate in nearly any scene and order.
- * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK says: more is culled where dense geometry is drawn in no order,
- *                   more slowly and with 28 bytes for 8x4 pixels. 0 (default): as QUICK_MASK says.
+ *                   Culling for Graphics Hardware"; not defined: three layers, accurate in nearly every scene and order.
+ * MOC_FOUR_LAYERS   1: four layers, whatever QUICK_MASK is: culls more where dense geometry is drawn unsorted, but is
+ *                   slower and takes 28 bytes per sub-tile of 8x4 pixels. 0 (default): as selected by QUICK_MASK.
  * USE_D3D           1: row 0 is the top of the screen (default); 0: the bottom (OpenGL).
  * USE_AVX512        0: at most AVX2. 1 or not defined: AVX-512 where the processor has it.
- * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which takes a tenth of the time of a draw.
+ * ENABLE_STATS      1: draws and queries are counted for GetStatistics, which makes draws about a tenth slower.
  *                   0 (default): GetStatistics returns zeros. GetNumDroppedTriangles counts either way.
  * MOC_CHECK_LAYOUT  1 (default without NDEBUG): RenderTriangles, TestTriangles, BinTriangles and RecordRenderTriangles assert
- *                   that a matrix does not come with VertexLayout(16, 4, 12), the default, whose last offset then names z: x, y,
- *                   z, w packed is (16, 4, 8) then. 0 (default with NDEBUG): they do not. For programs whose z does lie
- *                   at 12; they may also be told of it by SetMessageCallback, with MOC_STATUS_OK.
+ *                   that a matrix is not combined with VertexLayout(16, 4, 12), the default, whose last offset is then that of
+ *                   z: packed x, y, z, w with a matrix is (16, 4, 8). 0 (default with NDEBUG): no assertion. For programs whose
+ *                   z really is at 12; the callback of SetMessageCallback may still report it, with MOC_STATUS_OK.
  *
- * QUICK_MASK and USE_AVX512 stay undefined where the program leaves them so, while the header that this one
- * stands in for defines them (1 and 0): an undefined QUICK_MASK is what selects three layers. A later
- * `#if QUICK_MASK` of the program then is false, and -Wundef says so. Define them to have it as before.
+ * QUICK_MASK and USE_AVX512 stay undefined if the program does not define them, whereas Intel's header defines them (1
+ * and 0): leaving QUICK_MASK undefined is what selects three layers. A later `#if QUICK_MASK` in the program is then
+ * false, and -Wundef reports it. Define both for the previous behaviour.
  *
- * Accepted without effect, because the answer holds always: PRECISE_COVERAGE (coverage is exact),
- * CLIPPING_PRESERVES_ORDER (the order is kept), MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is there, a load and a branch a call while it is off;
- * FrameRecorder.h reads recordings).
+ * Accepted without effect, because they always hold: PRECISE_COVERAGE (coverage is exact), CLIPPING_PRESERVES_ORDER
+ * (the order is preserved), MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is always available and
+ * costs a load and a branch per call while it is off; FrameRecorder.h reads recordings).
  */
 #ifndef USE_D3D
 #define USE_D3D 1
@@ -144,10 +144,10 @@ public:
      * rethrow, provided they are compiled with exceptions; otherwise it must not throw.
      */
     typedef void *(*pfnAlignedAlloc)(size_t alignment, size_t size);
-    /** Frees what pfnAlignedAlloc gave. Must not throw. */
+    /** Frees memory allocated by pfnAlignedAlloc. Must not throw. */
     typedef void (*pfnAlignedFree)(void *ptr);
 
-    /** Which triangles face away, by their winding in normalised device coordinates (y up). */
+    /** Which triangles are back-facing and skipped, by their winding in normalised device coordinates (y up). */
     enum BackfaceWinding : int
     {
         BACKFACE_NONE = MOC_BACKFACE_NONE,
@@ -155,7 +155,7 @@ public:
         BACKFACE_CCW  = MOC_BACKFACE_CCW
     };
 
-    /** What a draw or a query found. */
+    /** The result of a draw or a query. */
     enum CullingResult : int
     {
         VISIBLE     = MOC_VISIBLE,
@@ -163,7 +163,7 @@ public:
         VIEW_CULLED = MOC_VIEW_CULLED
     };
 
-    /** The frustum planes that a mesh may cross. Only the near plane changes anything. */
+    /** The frustum planes that a mesh may cross. Only the near plane has an effect. */
     enum ClipPlanes : int
     {
         CLIP_PLANE_NONE   = MOC_CLIP_PLANE_NONE,
@@ -176,7 +176,7 @@ public:
         CLIP_PLANE_ALL    = MOC_CLIP_PLANE_ALL
     };
 
-    /** Where the coordinates of a vertex lie, in bytes. See MOC_VertexLayout for the usual ones. */
+    /** Where the coordinates of a vertex are stored, in bytes. See MOC_VertexLayout for common layouts. */
     struct VertexLayout
     {
         VertexLayout() : mStride(0), mOffsetY(0), mOffsetW(0) {}
@@ -192,8 +192,8 @@ public:
     };
 
     /**
-     * A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the size of the buffer, or that
-     * rounded up to the next multiple.
+     * A rectangle of pixels: x in multiples of 32, y of 8; a maximum may also be the width or height of the buffer, as
+     * is or rounded up to whole tiles.
      */
     struct ScissorRect
     {
@@ -209,21 +209,23 @@ public:
     /** A list of projected triangles in memory that the caller owns. */
     struct TriList
     {
-        unsigned int mNumTriangles; /**< how many triangles mPtr can hold */
-        unsigned int mTriIdx;       /**< how many it holds; 0 starts over */
-        float *mPtr;                /**< 9 floats a triangle */
+        unsigned int mNumTriangles; /**< number of triangles for which mPtr has room */
+        unsigned int mTriIdx;       /**< number of triangles in the list; 0 starts over */
+        float *mPtr;                /**< 9 floats per triangle */
     };
 
-    /** Counts since the object was made with ENABLE_STATS 1 (without: zeros), the same on every instruction set. */
+    /** Counts since the object was created with ENABLE_STATS 1 (otherwise zeros); the same on every instruction set. */
     struct OcclusionCullingStatistics
     {
         struct
         {
             long long mNumProcessedTriangles;  /**< submitted to be drawn or binned, and those of drawn lists */
-            /** That face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
-             * and again in each list drawn. */
+            /** Those that are front-facing and whose bounds contain a pixel centre on the screen: counted when they are
+             * binned, and again for each list that is drawn. */
             long long mNumRasterizedTriangles;
-            /** 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle. */
+            /**
+             * 32x8 tiles in the bounds of such triangles when they are drawn; for a list, only tiles inside the rectangle.
+             */
             long long mNumTilesTraversed;
             long long mNumTilesUpdated;        /**< tiles in which one changed, or could have changed, a sub-tile */
             long long mNumTilesMerged;         /**< tiles in which a reference depth rose */
@@ -233,19 +235,19 @@ public:
         {
             long long mNumProcessedRectangles; /**< rectangles tested */
             long long mNumProcessedTriangles;  /**< triangles submitted to be tested */
-            /** Those of them that were compared with the buffer, up to the first visible one. */
+            /** Those of them that were compared with the buffer, up to the first that may be visible. */
             long long mNumRasterizedTriangles;
-            long long mNumTilesTraversed;      /**< tiles that were compared with */
+            long long mNumTilesTraversed;      /**< tiles compared with rectangles and such triangles */
         } mOccludees;
     };
 
     /*
-     * An object without a buffer, on the best instruction set that the processor has and the argument allows.
-     * Null when there is no memory, or the library is of another version than this header.
+     * Creates an object without a buffer, on the best instruction set that the processor supports and the argument
+     * allows. Null if there is no memory, or if the library's version does not match this header.
      *
-     * The template argument carries the switches of the translation unit that calls; leave it out. Where
-     * translation units have different switches its default differs between them, which the rule of one
-     * definition forbids in letter; what is compiled is one function for each value, and never the wrong one.
+     * The template argument carries the switches of the calling translation unit; leave it out. Its default differs
+     * between translation units with different switches, which formally violates the one-definition rule; in practice
+     * one function is compiled for each value, and the right one is always called.
      */
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(Implementation RequestedSIMD = AVX512)
@@ -253,7 +255,7 @@ public:
         return CreateWith<Switches>(RequestedSIMD, nullptr, nullptr);
     }
 
-    /** The same, with all memory of the object, itself included, from the two callbacks (both or neither null). */
+    /** The same, but all memory, including that of the object itself, comes from the two callbacks (both or neither null). */
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(Implementation RequestedSIMD, pfnAlignedAlloc alignedAlloc,
                                           pfnAlignedFree alignedFree)
@@ -261,7 +263,7 @@ public:
         return CreateWith<Switches>(RequestedSIMD, alignedAlloc, alignedFree);
     }
 
-    /** The same as in 2016, without an argument for the instruction set. */
+    /** The signature of 2016, without an argument for the instruction set. */
     template <unsigned int Switches = MOC_DETAIL_SWITCHES>
     static MaskedOcclusionCulling *Create(pfnAlignedAlloc alignedAlloc, pfnAlignedFree alignedFree)
     {
@@ -300,7 +302,7 @@ public:
         allocation.ThrowAgain();
     }
 
-    /** The size of the buffer in pixels; 0 by 0 without one. */
+    /** Returns the size of the buffer in pixels; 0 by 0 without one. */
     void GetResolution(unsigned int &width, unsigned int &height) const
     {
         uint32_t w = 0, h = 0;
@@ -310,8 +312,9 @@ public:
     }
 
     /**
-     * The size of a bin in pixels: the buffer's divided by the number of bins, rounded down to 32 and 8. The
-     * last column and row of bins take the rest. 0 by 0 for a number that leaves no pixels, or no buffer.
+     * The size of a bin in pixels: that of the buffer divided by the number of bins, rounded down to multiples of 32
+     * and 8. The last column and row of bins extend to the buffer's edge. 0 by 0 if a bin would be empty, or without a
+     * buffer.
      */
     void ComputeBinWidthHeight(unsigned int nBinsW, unsigned int nBinsH, unsigned int &outBinWidth,
                                unsigned int &outBinHeight) const
@@ -323,8 +326,8 @@ public:
     }
 
     /**
-     * The near plane, in clip-space w, for calls with CLIP_PLANE_NEAR. With 0, the default, occludees that reach behind
-     * the eye are visible. NaN and infinities are refused.
+     * Sets the near plane, in clip-space w, for calls with CLIP_PLANE_NEAR. With 0, the default, occludees that reach
+     * behind the eye are visible. NaN and infinities are refused.
      */
     void SetNearClipPlane(float nearDist) { MOC_SetNearClipPlane(this, nearDist); }
 
@@ -336,34 +339,37 @@ public:
         return near_w;
     }
 
-    /** Sets every pixel infinitely far. */
+    /** Clears every pixel to infinitely far. */
     void ClearBuffer()
     {
         Direct([&] { return MOC_ClearBuffer(this); });
     }
 
-    /** Afterwards this buffer hides what either hid, and never more. Another size or y direction is refused. */
+    /**
+     * Merges another buffer into this one: afterwards this one hides what either hid, and never more. A buffer of another
+     * size or y direction is refused.
+     */
     void MergeBuffer(MaskedOcclusionCulling *BufferB)
     {
         const MaskedOcclusionCulling *const other = BufferB;
         Direct([&] { return MOC_MergeBuffer(this, other); }, &other, 1);
     }
 
-    /** Folds several buffers into this one: the result of MergeBuffer one by one, but faster. */
+    /** Merges several buffers into this one: the same result as MergeBuffer for each of them, but faster. */
     void MergeBuffers(const MaskedOcclusionCulling *const *others, unsigned int count)
     {
         Direct([&] { return MOC_MergeBuffers(this, others, count); }, others, count);
     }
 
     /**
-     * Draws occluders: three indices a triangle. VIEW_CULLED when every triangle lies outside of the view,
-     * faces away or is dropped, else VISIBLE.
+     * Draws occluders: three indices per triangle. Returns VIEW_CULLED if every triangle is outside the view,
+     * back-facing or dropped, otherwise VISIBLE.
      *
      * modelToClipMatrix (null: the vertices are in clip space): 16 floats m,
      *     x' = x*m[0] + y*m[4] + z*m[8] + m[12],
      *     y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15].
-     * vtxLayout: without a matrix the third offset names w. With a matrix the third offset names z: pass
-     * (16, 4, 8) or (12, 4, 8), for the default does not fit.
+     * vtxLayout: the third offset is that of w without a matrix, that of z with one. With a matrix pass (16, 4, 8) or
+     * (12, 4, 8), because the default is wrong then.
      */
     CullingResult RenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                   const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
@@ -380,10 +386,10 @@ public:
     }
 
     /**
-     * Tests a rectangle in normalised device coordinates (x/w, y/w, y up) whose nearest point is at wmin, in
-     * clip-space w; docs/conventions.md makes one of a box. Pass 0 for what reaches through the near plane.
-     * VISIBLE when some of it is nearer than what was drawn, or at the same depth; VIEW_CULLED when it lies off
-     * screen; VISIBLE, too, for a NaN, for wmin <= 0 and for an empty rectangle (a minimum above its maximum).
+     * Tests a rectangle in normalised device coordinates (x/w, y/w, y up) whose nearest point is at wmin, in clip-space
+     * w; docs/conventions.md shows how to compute it from a box. Pass wmin = 0 if the object crosses the near plane.
+     * Returns VISIBLE if any of it is nearer than what was drawn, or at the same depth; VIEW_CULLED if it is off
+     * screen; VISIBLE also for a NaN, for wmin <= 0 and for an empty rectangle (a minimum above its maximum).
      */
     CullingResult TestRect(float xmin, float ymin, float xmax, float ymax, float wmin) const
     {
@@ -393,11 +399,11 @@ public:
     }
 
     /**
-     * Tests occludees: VISIBLE when some part is nearer than what was drawn, or at the same depth. VIEW_CULLED
-     * when no triangle that faces the eye touches a pixel, or OCCLUDED, where all around is hidden. The arguments
-     * are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third offset names z: pass (16, 4, 8) or (12, 4, 8).
-     * The answer is for the triangles, not for what they enclose: take a box that reaches through the near plane, or
-     * holds the eye, for visible.
+     * Tests occludees. Returns VISIBLE if any part of them is nearer than what was drawn, or at the same depth;
+     * VIEW_CULLED if no front-facing triangle touches a pixel, or OCCLUDED if all the pixels around such triangles are
+     * hidden. The arguments are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the
+     * third offset is that of z: pass (16, 4, 8) or (12, 4, 8). The answer is for the triangles, not for what they
+     * enclose: treat a box that crosses the near plane or contains the eye as visible.
      */
     CullingResult TestTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                 const float *modelToClipMatrix = nullptr, BackfaceWinding bfWinding = BACKFACE_CW,
@@ -411,10 +417,10 @@ public:
     }
 
     /**
-     * Appends each triangle that may be drawn to the list of every bin that it reaches; nBinsW * nBinsH lists,
-     * row by row. A full list takes no more: its mTriIdx is then mNumTriangles, and less is hidden. The other
-     * arguments are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third
-     * offset names z: pass (16, 4, 8) or (12, 4, 8).
+     * Appends each triangle that may be drawn to the list of every bin that it overlaps; there are nBinsW * nBinsH
+     * lists, row by row. A full list (mTriIdx equals mNumTriangles) drops further triangles, so less is hidden. The
+     * other arguments are those of RenderTriangles: with a matrix (x' = x*m[0] + y*m[4] + z*m[8] + m[12]) the third
+     * offset is that of z: pass (16, 4, 8) or (12, 4, 8).
      */
     void BinTriangles(const float *inVtx, const unsigned int *inTris, int nTris, TriList *triLists,
                       unsigned int nBinsW, unsigned int nBinsH, const float *modelToClipMatrix = nullptr,
@@ -427,9 +433,9 @@ public:
     }
 
     /**
-     * Draws a list inside the rectangle (null: everywhere). Several threads may, on separate rectangles. One
-     * that is not in multiples of 32 and 8 (see ScissorRect) is refused silently, and nothing is drawn;
-     * MOC_RenderTrilist gives the status.
+     * Draws a list inside the rectangle (null: everywhere). Several threads may do so at once, in rectangles that do
+     * not overlap. A rectangle that is not in multiples of 32 and 8 (see ScissorRect) is refused silently, and nothing
+     * is drawn; MOC_RenderTrilist returns the status.
      */
     void RenderTrilist(const TriList &triList, const ScissorRect *scissor)
     {
@@ -442,13 +448,13 @@ public:
         Direct([&] { return MOC_RenderTrilist(this, reinterpret_cast<const MOC_TriList *>(&triList), &rect); });
     }
 
-    /** The depth (1/w) of width * height pixels, row by row; negative where nothing was drawn. */
+    /** Writes the depth (1/w) of width * height pixels, row by row; negative where nothing was drawn. */
     void ComputePixelDepthBuffer(float *depthData, bool flipY) const
     {
         Direct([&] { return MOC_ComputePixelDepthBuffer(this, depthData, flipY ? 1 : 0); });
     }
 
-    /** What was counted since the object was made. */
+    /** Returns the counts since the object was created. */
     OcclusionCullingStatistics GetStatistics() const
     {
         MOC_Statistics s = {};
@@ -468,8 +474,8 @@ public:
     }
 
     /**
-     * The number of triangles dropped by draws since the object was created, because of a NaN, an infinity or a distance beyond
-     * 2^40; counted whatever ENABLE_STATS is. Not in the library that this header replaces.
+     * The number of triangles dropped by draws since the object was created, because of a NaN, an infinity or a
+     * distance beyond 2^40; counted whatever ENABLE_STATS is. Intel's library has no such method.
      */
     long long GetNumDroppedTriangles() const
     {
@@ -486,7 +492,7 @@ public:
         return static_cast<Implementation>(implementation);
     }
 
-    /** (x, y, z, 1) * mtx for nVtx vertices, written as packed x, y, z, w. */
+    /** Transforms nVtx vertices by (x, y, z, 1) * mtx and writes them as packed x, y, z, w. */
     static void TransformVertices(const float *mtx, const float *inVtx, float *xfVtx, unsigned int nVtx,
                                   const VertexLayout &vtxLayout = VertexLayout(12, 4, 8))
     {
@@ -494,28 +500,29 @@ public:
         MOC_TransformVertices(mtx, inVtx, xfVtx, nVtx, &layout);
     }
 
-    /** The callbacks of Create, or the library's own where none were given. */
+    /** Returns the callbacks passed to Create, or the library's own if there were none. */
     void GetAllocFreeCallback(pfnAlignedAlloc &allocCallback, pfnAlignedFree &freeCallback) const
     {
         MOC_GetAllocFreeCallback(this, &allocCallback, &freeCallback);
     }
 
     /**
-     * Records clears, draws and queries, with their answers, into a file from now on; those of a thread pool, too.
-     * False where the file cannot be made, the object has no buffer, or it records already. Once a call is in the file,
-     * setting another near plane or resolution ends it. BinTriangles, RenderTrilist and MergeBuffer are not recorded.
+     * Records clears, draws and queries, with their results, into a file from now on, including those of a thread pool.
+     * Returns false if the file cannot be created, if there is no buffer, or if the object is already recording.
+     * Changing the near plane or the resolution ends a recording that already contains a call. BinTriangles,
+     * RenderTrilist and MergeBuffer are not recorded.
      */
     bool RecorderStart(const char *outputFilePath) const
     {
         return MOC_RecorderStart(this, outputFilePath) == MOC_STATUS_OK;
     }
 
-    /** Ends the recording, if there is one. MOC_RecorderStop says whether all of it was written. */
+    /** Ends the recording, if there is one. MOC_RecorderStop reports whether all of it was written. */
     void RecorderStop() const { MOC_RecorderStop(this); }
 
     /**
-     * Records a draw that RenderTriangles is not told of, such as that of a binned mesh. Note that clip planes and winding
-     * stand the other way round than in RenderTriangles.
+     * Records a draw that does not go through RenderTriangles, such as that of a binned mesh. Note that clip planes and
+     * winding are in the opposite order to RenderTriangles.
      */
     void RecordRenderTriangles(const float *inVtx, const unsigned int *inTris, int nTris,
                                const float *modelToClipMatrix = nullptr, ClipPlanes clipPlaneMask = CLIP_PLANE_ALL,
@@ -528,7 +535,7 @@ public:
                                   cullingResult);
     }
 
-    /* The library makes and frees objects; this class only names them. */
+    /* Objects are created and freed by the library only; to C++ this is an opaque class. */
     MaskedOcclusionCulling() = delete;
     ~MaskedOcclusionCulling() = delete;
     MaskedOcclusionCulling(const MaskedOcclusionCulling &) = delete;
@@ -537,7 +544,7 @@ public:
 private:
     friend class CullingThreadpool;
 
-    /* A call that changes or copies the buffer: waits first for what a pool has in flight for it. */
+    /* For calls that change or copy the buffer: first waits for a pool's work in flight on this object. */
     template <class Call>
     void Direct(Call call, const MaskedOcclusionCulling *const *others = nullptr, unsigned int count = 0) const
     {

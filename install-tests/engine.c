@@ -1,4 +1,4 @@
-/* The same engine in C: draws a wall and asks what it hides. The exit code says whether the answers are right. */
+/* The same engine in C: draws a wall and tests what it hides. The exit code says whether the answers are correct. */
 #include <masked_occlusion_culling.h>
 
 #include <stdio.h>

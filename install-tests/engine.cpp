@@ -1,5 +1,5 @@
-// An engine in small, built against the installed library: draws a wall and asks what it hides, directly and by way of
-// the pool of threads. The exit code says whether the answers are right.
+// A minimal engine built against the installed library: draws a wall and tests what it hides, directly and through a
+// thread pool. The exit code says whether the answers are correct.
 #include <CullingThreadpool.h>
 #include <MaskedOcclusionCulling.h>
 

@@ -9,23 +9,23 @@ use crate::camera::Camera;
 use crate::options::{Isa, Rule, isa};
 use crate::scene::Scene;
 
-/// Culls a scene with a C++ program that uses the library as an engine would, and draws what it found.
+/// Culls a scene with a C++ program that uses the library as an engine would, and draws pictures of the result.
 #[derive(Debug, Parser)]
 #[command(name = "demo")]
 pub struct Args {
-    /// A .obj, .gltf or .glb file, or a recorded frame (.mocrec), of which camera and size are known; without one a small
+    /// A .obj, .gltf or .glb file, or a recorded frame (.mocrec), whose camera and size are known; without one a small
     /// town is generated
     pub scene: Option<PathBuf>,
 
-    /// Where the camera is, in the file's units (default: chosen for the scene)
+    /// Position of the camera, in the file's units (default: chosen for the scene)
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<Vec3>,
 
-    /// What the camera looks at (default: the middle of the scene)
+    /// Point that the camera looks at (default: the middle of the scene)
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub look: Option<Vec3>,
 
-    /// Which way is up
+    /// The up direction
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, default_value = "0,1,0")]
     pub up: Vec3,
 
@@ -41,49 +41,49 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, default_value = "1920x1080")]
     pub size: (u32, u32),
 
-    /// How the buffer takes in triangles
+    /// Update rule of the buffer
     #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
     pub rule: Rule,
 
-    /// The highest instruction set that may be used (default: the best that the processor has)
+    /// The highest instruction set that may be used (default: the best of the processor)
     #[arg(long, value_name = "ISA", value_parser = isa)]
     pub isa: Option<Isa>,
 
-    /// Splits meshes of more triangles than this into pieces (default: for about a thousand objects)
+    /// Splits meshes of more triangles than this (default: chosen to give about a thousand objects)
     #[arg(long, value_name = "TRIANGLES", value_parser = count, allow_negative_numbers = true)]
     pub split: Option<u32>,
 
-    /// Records a frame into this file, to be played by `replay`
+    /// Records a frame to this file, to be played with `replay`
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
 
-    /// Where the pictures are written
+    /// Folder for the pictures
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
 }
 
 impl Args {
-    /// The recording that is to be played, if it is one.
+    /// The recording to be played, if the scene is one.
     pub fn recording(&self) -> Option<&Path> {
         let is_recording = |path: &&Path| path.extension().is_some_and(|extension| extension == "mocrec");
         self.scene.as_deref().filter(is_recording)
     }
 
-    /// Is there a folder for the recording?
+    /// Checks that --record can be used: its folder must exist, and the scene must not itself be a recording.
     pub fn check_record(&self) -> crate::Result<()> {
         let Some(file) = &self.record else { return Ok(()) };
         if self.recording().is_some() {
-            return Err("--record needs a scene: what is played is recorded already".into());
+            return Err("--record needs a scene: a recording cannot be recorded again".into());
         }
         match file.parent() {
             Some(folder) if folder != Path::new("") && !folder.is_dir() => {
-                Err(format!("--record {}: there is no folder {}", file.display(), folder.display()).into())
+                Err(format!("--record {}: the folder {} does not exist", file.display(), folder.display()).into())
             }
             _ => Ok(()),
         }
     }
 
-    /// The camera that is asked for; what is left open is chosen for the scene.
+    /// The requested camera; anything not specified is chosen for the scene.
     pub fn camera(&self, scene: &Scene) -> crate::Result<Camera> {
         let (lo, hi) = scene.bounds();
         let mut camera = Camera {
@@ -106,16 +106,14 @@ impl Args {
             camera.look += camera.sideways();
         }
         if !camera.is_upright() {
-            return Err(
-                "the camera looks along --up: give another direction as --up, or another --eye or --look".into()
-            );
+            return Err("the camera looks along --up: choose another --up, --eye or --look".into());
         }
         Ok(camera)
     }
 }
 
 impl Rule {
-    /// What the C++ program is compiled with: the switch of the class that engines know.
+    /// The preprocessor definition with which the C++ program is compiled, as engines define it.
     pub fn define(self) -> Option<(&'static str, &'static str)> {
         match self {
             Rule::ThreeLayer => None,
@@ -130,7 +128,7 @@ fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse::<f32>()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(Vec3::new(x, y, z)),
-        _ => Err("three numbers with commas between them are expected, as in 1,2.5,-3".into()),
+        _ => Err("expected three numbers separated by commas, as in 1,2.5,-3".into()),
     }
 }
 
@@ -208,7 +206,7 @@ mod tests {
         ] {
             assert!(Args::try_parse_from(["demo", bad[0], bad[1]]).is_err(), "{bad:?} is accepted");
         }
-        // What looks like an option is taken for the value that it is.
+        // A value that looks like an option is still taken as the value.
         for (option, value) in [("--near", "-1"), ("--fov", "-30"), ("--split", "-5"), ("--size", "-8x4")] {
             let error = Args::try_parse_from(["demo", option, value]).unwrap_err().to_string();
             assert!(error.contains(option) && error.contains("expected") || error.contains("pixels"), "{error}");

@@ -1,4 +1,4 @@
-//! Where the scene is seen from.
+//! Choosing a camera for a scene.
 
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_to_mat4};
 use glam::{Mat4, Vec3};
@@ -6,7 +6,7 @@ use glam::{Mat4, Vec3};
 use crate::raster::{NOTHING, ZBuffer};
 use crate::scene::Scene;
 
-/// A camera that sees in perspective, without a far plane.
+/// A perspective camera without a far plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     pub eye: Vec3,
@@ -20,23 +20,23 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Is up another direction than that of the view? Places too far apart for a float say no as well.
+    /// Whether up differs from the view direction. False also if the two points are too far apart for a float.
     pub fn is_upright(&self) -> bool {
         (self.look - self.eye).normalize_or_zero().cross(self.up).length() >= 1e-3
     }
 
-    /// From the world to clip space: w is the distance along the view, z is the near distance.
+    /// World to clip space: w is the distance along the view direction, z is the near distance.
     pub fn clip_from_world(&self) -> Mat4 {
         let direction = (self.look - self.eye).normalize();
         perspective_infinite_reverse(self.fov, self.aspect, self.near) * look_to_mat4(self.eye, direction, self.up)
     }
 
-    /// Some direction at a right angle to up.
+    /// Any direction perpendicular to up.
     pub fn sideways(&self) -> Vec3 {
         self.up.any_orthonormal_vector()
     }
 
-    /// Tries places inside of the scene and in front of it, and takes the best.
+    /// Tries camera positions inside the scene and in front of it, and returns the best.
     pub fn choose(&mut self, scene: &Scene, look: Option<Vec3>) {
         if let Some(best) = self.ranked(scene, look).first() {
             (self.eye, self.look) = *best;
@@ -47,8 +47,8 @@ impl Camera {
         (self.eye, self.look) = ((lo + hi) / 2.0 + local * (hi - lo), (lo + hi) / 2.0);
     }
 
-    /// Places of the eye inside of the scene and in front of it with what each looks at, the best first; without those from
-    /// which nothing is to be seen.
+    /// Eye positions inside the scene and in front of it, each with its target, best first; positions from which
+    /// nothing is visible are omitted.
     pub fn ranked(&self, scene: &Scene, look: Option<Vec3>) -> Vec<(Vec3, Vec3)> {
         let (lo, hi) = scene.bounds();
         let size = hi - lo;
@@ -77,13 +77,13 @@ impl Camera {
             (if camera.is_upright() { camera.score(scene) } else { 0.0 }, (eye, camera.look))
         });
         let mut scored: Vec<_> = scored.filter(|(score, _)| *score > 0.0).collect();
-        // Stable: of equal ones the first.
+        // A stable sort: of equal ones the first wins.
         scored.sort_by(|a, b| b.0.total_cmp(&a.0));
         scored.into_iter().map(|(_, place)| place).collect()
     }
 
-    /// How much there is to see and to cull: many objects in front and many behind, few of them in the way, and
-    /// few backs of triangles.
+    /// Score of a view for culling: many objects in front and many behind them, few right before the camera, and few
+    /// back faces.
     fn score(&self, scene: &Scene) -> f32 {
         let clip = self.clip_from_world();
         let mut buffer = ZBuffer::new(96, 54);
@@ -111,7 +111,7 @@ impl Camera {
     }
 }
 
-/// May a box be in view? It is not when all its corners lie beyond one side.
+/// Whether a box may be in view. It is not if all its corners are outside the same plane.
 pub fn in_view(lo: Vec3, hi: Vec3, clip: &Mat4) -> bool {
     let corners = box_corners(lo, hi).map(|p| *clip * p.extend(1.0));
     let outside = |side: fn(f32, f32, f32) -> bool| corners.iter().all(|c| side(c.x, c.y, c.w));

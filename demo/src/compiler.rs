@@ -1,14 +1,14 @@
-//! Is there a C++ compiler, and what went wrong with it?
+//! Whether there is a working C++ compiler, and what is wrong if there is not.
 
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 
 use crate::{Result, native};
 
-/// Says in one line when the compiler that would be used cannot be.
+/// A one-line error if the compiler that would be used does not work.
 pub fn find(folder: &Path) -> Result<()> {
     let tool = native::target().compiler(true, folder).opt_level(2).try_get_compiler();
-    // Without a tool there is no name but the one that was asked for.
+    // If no tool was found, the only known name is the requested one.
     let name = match &tool {
         Ok(tool) => tool.path().to_owned(),
         Err(_) => std::env::var_os("CXX").unwrap_or_else(|| "c++".into()).into(),
@@ -30,7 +30,7 @@ fn version(tool: &cc::Tool) -> std::io::Result<ExitStatus> {
     command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status()
 }
 
-/// What the compiler said, without the first line: the command, and with it the whole environment.
+/// The compiler's output without the first line, which has the command and the whole environment.
 pub fn complaint(error: String) -> String {
     match error.split_once('\n') {
         Some((_, said)) => format!("the C++ compiler failed:\n{}", said.trim_end()),

@@ -1,19 +1,19 @@
-//! The depths of a buffer as a picture.
+//! Pictures of the depths in a buffer.
 
 use glam::Vec3;
 
 use crate::image::Image;
 
-/// A picture with longer sides takes minutes to compress.
+/// Pictures with longer sides take minutes to compress.
 const LARGEST: u32 = 4096;
 
-/// The size of a buffer's picture: its own, or of the same shape where that is too large.
+/// The picture's size: that of the buffer or, if that is too large, a smaller one with the same aspect ratio.
 pub fn reduced((width, height): (u32, u32)) -> (usize, usize) {
     let divisor = width.max(height).div_ceil(LARGEST).max(1);
     ((width / divisor).max(1) as usize, (height / divisor).max(1) as usize)
 }
 
-/// The depth of every pixel: near is bright, and nothing is dark. The scale is logarithmic.
+/// The depth of every pixel, on a logarithmic scale: near is bright, and pixels where nothing was drawn are dark.
 pub fn depth_picture(depth: &[f32], (from_w, from_h): (u32, u32), (width, height): (usize, usize)) -> Image {
     let mut known: Vec<f32> = depth.iter().copied().filter(|d| *d > 0.0).collect();
     let mut quantile = |q: f32| {
@@ -33,7 +33,7 @@ pub fn depth_picture(depth: &[f32], (from_w, from_h): (u32, u32), (width, height
     };
     let mut image = Image::new(width, height, Vec3::ZERO);
     for (i, pixel) in image.pixels.iter_mut().enumerate() {
-        // The mean of the buffer's pixels that this one covers, one at least.
+        // The mean of the buffer's pixels that this one covers (at least one).
         let range = |at: usize, to: usize, from: u32| {
             let lo = at * from as usize / to;
             lo..((at + 1) * from as usize / to).max(lo + 1)

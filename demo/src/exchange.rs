@@ -1,4 +1,4 @@
-//! The files that the driver and the C++ program exchange. Their layout is told in cpp-examples/demo.cpp.
+//! The files that the driver and the C++ program exchange. cpp-examples/demo.cpp documents their layout.
 
 use std::fs;
 use std::io::{BufWriter, Write};
@@ -8,7 +8,7 @@ use crate::Result;
 use crate::camera::Camera;
 use crate::scene::Scene;
 
-/// What became of an object, in the numbers of the C++ class.
+/// The result for an object, with the values of the C++ class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     Visible = 0,
@@ -16,11 +16,11 @@ pub enum Fate {
     Outside = 3,
 }
 
-/// What the C++ program found.
+/// The results of the C++ program.
 pub struct Outcome {
-    /// For each object.
+    /// One for each object.
     pub fates: Vec<Fate>,
-    /// For each pixel, the top row first: 1/w, negative where nothing is.
+    /// 1/w of each pixel, top row first; negative where nothing was drawn.
     pub depth: Vec<f32>,
 }
 
@@ -55,19 +55,19 @@ pub fn write_scene(path: &Path, scene: &Scene, camera: &Camera, (width, height):
     Ok(())
 }
 
-/// Reads what the program wrote.
+/// Reads the results that the program wrote.
 pub fn read_outcome(path: &Path, objects: usize, (width, height): (u32, u32)) -> Result<Outcome> {
     let bytes = fs::read(path)?;
     let (fates, depth) = bytes.split_at_checked(objects).ok_or("the result is cut short")?;
     let (depth, rest) = depth.as_chunks();
     if depth.len() != width as usize * height as usize || !rest.is_empty() {
-        return Err("the result has another size than the buffer".into());
+        return Err("the result and the buffer differ in size".into());
     }
     let fate = |byte: &u8| match byte {
         0 => Ok(Fate::Visible),
         1 => Ok(Fate::Culled),
         3 => Ok(Fate::Outside),
-        _ => Err(format!("{byte} is no culling result")),
+        _ => Err(format!("{byte} is not a culling result")),
     };
     Ok(Outcome {
         fates: fates.iter().map(fate).collect::<std::result::Result<_, _>>()?,

@@ -1,4 +1,4 @@
-//! The bytes behind a glTF file: in the file itself, beside it, or in base64.
+//! The buffers of a glTF file: inside the file, in separate files, or in base64.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use gltf::buffer::Source;
 
 use crate::Result;
 
-/// Every buffer of a document; `blob` is what a `.glb` file holds itself.
+/// Every buffer of a document; `blob` is the one contained in a `.glb` file.
 pub fn read(document: &gltf::Document, folder: &Path, mut blob: Option<Vec<u8>>) -> Result<Vec<Vec<u8>>> {
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
@@ -29,13 +29,13 @@ fn from_uri(uri: &str, folder: &Path) -> Result<Vec<u8>> {
         return Ok(base64(text).ok_or("a buffer's base64 is broken")?);
     }
     if let Some((scheme, _)) = uri.split_once(':') {
-        return Err(format!("a buffer lies at a {scheme} address: only files beside the scene are read").into());
+        return Err(format!("a buffer is at a {scheme} address: only local files next to the scene are read").into());
     }
     let path = folder.join(percent_decoded(uri).ok_or("a buffer's address is broken")?);
     fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()).into())
 }
 
-/// `%20` is a space, and so on.
+/// Decodes percent-encoding: `%20` is a space.
 fn percent_decoded(text: &str) -> Option<String> {
     let mut parts = text.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();
@@ -64,7 +64,7 @@ fn base64(text: &str) -> Option<Vec<u8>> {
             bytes.push((bits >> count) as u8);
         }
     }
-    // Six bits left over are a letter too many.
+    // Six bits left over mean one letter too many.
     (count < 6).then_some(bytes)
 }
 

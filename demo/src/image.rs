@@ -34,7 +34,7 @@ impl Image {
         half
     }
 
-    /// Copies `other` to a place; what does not fit is left out.
+    /// Copies `other` to a position; pixels outside this image are dropped.
     pub fn paste(&mut self, other: &Image, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
             let columns = other.width.min(self.width.saturating_sub(x));
@@ -50,7 +50,7 @@ impl Image {
         }
     }
 
-    /// A line with round ends; with both ends in one place, a dot.
+    /// A line with round ends; a dot if both ends are the same point.
     pub fn line(&mut self, from: Vec2, to: Vec2, thickness: f32, colour: Vec3, alpha: f32) {
         let reach = Vec2::splat(thickness + 1.0);
         let size = Vec2::new(self.width as f32, self.height as f32);
@@ -67,7 +67,7 @@ impl Image {
         }
     }
 
-    /// Words on a dark strip: each run of text has a colour.
+    /// Text on a dark strip; each run has its own colour.
     pub fn label(&mut self, x: i32, y: i32, runs: &[(&str, Vec3)]) {
         let advance = get_raster_width(FontWeight::Regular, TEXT) as i32;
         let letters: i32 = runs.iter().map(|(text, _)| text.chars().count() as i32).sum();

@@ -1,4 +1,4 @@
-//! What the programs `demo` and `replay` consist of; the tools use its scenes, pictures and z-buffer, too.
+//! Code of the programs `demo` and `replay`; the tools use its scenes, pictures and z-buffer, too.
 
 pub mod args;
 pub mod camera;
@@ -20,5 +20,5 @@ pub mod shapes;
 pub mod split;
 pub mod town;
 
-/// A message for whoever runs the program.
+/// An error message for the user.
 pub type Result<T, E = Box<dyn std::error::Error>> = std::result::Result<T, E>;

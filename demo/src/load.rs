@@ -12,10 +12,10 @@ use crate::Result;
 use crate::gltf_buffers;
 use crate::scene::{Mesh, Object, Scene};
 
-/// Of what has no colour of its own.
+/// The colour of surfaces without one.
 const PLAIN: Vec3 = Vec3::new(0.72, 0.7, 0.66);
 
-/// The scene in a file; its ending says in which format. Says how many triangles were dropped, if any.
+/// Loads the scene in a file, whose extension determines the format. Reports how many triangles were dropped, if any.
 pub fn load(path: &Path) -> Result<Scene> {
     let (scene, dropped) = read(path)?;
     if dropped > 0 {
@@ -26,7 +26,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The scene, and how many triangles were dropped because a vertex of theirs is NaN or infinite.
+/// The scene, and the number of triangles dropped because of a NaN or infinite vertex.
 fn read(path: &Path) -> Result<(Scene, usize)> {
     let file = File::open(path).map_err(|e| format!("cannot open {}: {e}", path.display()))?;
     let bar = ProgressBar::new(file.metadata()?.len());
@@ -37,7 +37,7 @@ fn read(path: &Path) -> Result<(Scene, usize)> {
     let mut scene = match ending.as_str() {
         "obj" => obj(reader, folder),
         "gltf" | "glb" => gltf(reader, folder),
-        _ => Err("the file is none of .obj, .gltf, .glb and .mocrec".into()),
+        _ => Err("not a .obj, .gltf, .glb or .mocrec file".into()),
     }
     .map_err(|e| format!("{}: {e}", path.display()))?;
     bar.finish_and_clear();
@@ -47,14 +47,14 @@ fn read(path: &Path) -> Result<(Scene, usize)> {
         let reason = if dropped > 0 {
             "all its triangles have a vertex that is not a finite number"
         } else {
-            "there are no triangles in it"
+            "it contains no triangles"
         };
         return Err(format!("{}: {reason}", path.display()).into());
     }
     Ok((scene, dropped))
 }
 
-/// Keeps the order of what stays. Returns how many were dropped.
+/// Preserves the order of the remaining triangles. Returns the number of dropped ones.
 fn drop_triangles_that_are_not_finite(scene: &mut Scene) -> usize {
     let before = scene.num_triangles();
     let objects = std::mem::take(&mut scene.objects);
@@ -66,7 +66,7 @@ fn drop_triangles_that_are_not_finite(scene: &mut Scene) -> usize {
             .zip(colours)
             .filter(|(triangle, _)| triangle.iter().all(|&i| is_finite[i as usize]))
             .unzip();
-        // No triangle has them now, but the bounds are those of all vertices.
+        // No remaining triangle uses them, but the bounds are computed from all vertices.
         let finite = positions.iter().copied().find(|p| p.is_finite()).unwrap_or_default();
         positions.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = finite);
         scene.add(Mesh { positions, triangles, colours }, occluder, two_sided);
@@ -74,8 +74,8 @@ fn drop_triangles_that_are_not_finite(scene: &mut Scene) -> usize {
     before - scene.num_triangles()
 }
 
-/// An object for each `o` or `g`, and for each material in it. The format does not say which side of a
-/// triangle is its front, so both are.
+/// One object for each `o` or `g`, and for each material in it. The format does not specify which side of a triangle is
+/// its front, so objects are two-sided.
 fn obj(reader: impl BufRead, folder: &Path) -> Result<Scene> {
     let options =
         tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
@@ -85,7 +85,7 @@ fn obj(reader: impl BufRead, folder: &Path) -> Result<Scene> {
         use tobj::LoadError::{
             FaceColorOutOfBounds, FaceNormalOutOfBounds, FaceTexCoordOutOfBounds, FaceVertexOutOfBounds,
         };
-        // Indices are compared with what there is only when the next object begins.
+        // The parser validates indices only when the next object begins.
         let place = match error {
             FaceVertexOutOfBounds | FaceTexCoordOutOfBounds | FaceNormalOutOfBounds | FaceColorOutOfBounds => {
                 "in the object that ends at line"
@@ -94,7 +94,7 @@ fn obj(reader: impl BufRead, folder: &Path) -> Result<Scene> {
         };
         format!("{place} {}: {error}", reader.number())
     })?;
-    // Without its material file a mesh is only less colourful.
+    // Without its material file a mesh only loses its colours.
     let materials = materials.unwrap_or_default();
     let mut scene = Scene::default();
     for model in models {
@@ -110,12 +110,12 @@ fn obj(reader: impl BufRead, folder: &Path) -> Result<Scene> {
 struct Lines<R> {
     reader: R,
     ended: usize,
-    /// Was something read after the last end of a line?
+    /// Whether anything was read after the last line ending.
     inside: bool,
 }
 
 impl<R> Lines<R> {
-    /// Of the line that was read last; the first is 1.
+    /// Number of the line read last; the first is 1.
     fn number(&self) -> usize {
         self.ended + usize::from(self.inside)
     }
@@ -135,7 +135,7 @@ impl<R: BufRead> BufRead for Lines<R> {
     }
 
     fn consume(&mut self, amount: usize) {
-        // What is consumed was filled before, so that nothing is read here.
+        // Consumed bytes were filled before, so this reads nothing.
         if let Ok(buffer) = self.reader.fill_buf() {
             let consumed = &buffer[..amount.min(buffer.len())];
             self.ended += consumed.iter().filter(|byte| **byte == b'\n').count();
@@ -145,7 +145,7 @@ impl<R: BufRead> BufRead for Lines<R> {
     }
 }
 
-/// An object for each primitive of each node. Points and lines are left out.
+/// One object for each primitive of each node. Points and lines are skipped.
 fn gltf(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
     let mut bytes = Vec::new();
     reader.read_to_end(&mut bytes)?;
@@ -172,7 +172,7 @@ fn gltf(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
             };
             let mut triangles = triangles(primitive.mode(), &indices);
             if world.determinant() < 0.0 {
-                // A mirror turns fronts into backs.
+                // A mirroring transform reverses the winding.
                 triangles.iter_mut().for_each(|t| t.swap(1, 2));
             }
             let material = primitive.material();
@@ -183,7 +183,7 @@ fn gltf(mut reader: impl BufRead, folder: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// A mesh of one colour, whose indices are looked at.
+/// A mesh of one colour, with its indices checked.
 fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>, colour: Vec3) -> Result<Mesh> {
     if triangles.iter().flatten().any(|&i| i as usize >= positions.len()) {
         return Err("an index is out of range".into());
@@ -199,7 +199,7 @@ fn triples(indices: &[u32]) -> Vec<[u32; 3]> {
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => triples(indices),
-        // Every second triangle of a strip is wound the other way.
+        // Every second triangle of a strip has the opposite winding.
         Mode::TriangleStrip => indices
             .windows(3)
             .enumerate()
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(scene.bounds(), (Vec3::ZERO, Vec3::splat(5.0)));
     }
 
-    /// Two nodes with one mesh of one triangle: the second mirrored, and moved by its parent.
+    /// Two nodes that share a mesh of one triangle: the second is mirrored, and translated by its parent.
     fn gltf_text(buffer: &str) -> String {
         format!(
             r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,1]}}],

@@ -1,7 +1,8 @@
-//! Culls a scene with cpp-examples/demo.cpp, which uses the library as an engine does, and draws what it found.
+//! Culls a scene with cpp-examples/demo.cpp, which uses the library as an engine does, and draws pictures of the
+//! result.
 //!
-//! This driver makes or loads the scene, compiles the C++ program against include/ and the library that cargo
-//! built, runs it, checks its answers against a plain z-buffer, and writes the pictures.
+//! This driver generates or loads the scene, compiles the C++ program against include/ and the library that cargo
+//! built, runs it, checks its results against a plain z-buffer, and writes the pictures.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -17,7 +18,7 @@ use demo::depth_picture::{self, depth_picture};
 use demo::exchange::{self, Fate};
 use demo::{Result, compiler, load, native, picture, play, raster, split, town};
 
-/// Of a recording.
+/// How often a recording is played for the measurement.
 const REPEATS: u32 = 101;
 
 fn main() -> ExitCode {
@@ -51,9 +52,9 @@ fn run(args: &Args) -> Result<()> {
     let list = |v: glam::Vec3| v.to_array().map(|n| n.to_string()).join(",");
     say(format_args!("camera: --eye {} --look {}\n", list(camera.eye), list(camera.look)));
 
-    fs::create_dir_all(&args.out).map_err(|e| format!("cannot make {}: {e}", args.out.display()))?;
-    // What the program needs goes when the pictures are there. Not every system runs programs in its folder for
-    // temporary files.
+    fs::create_dir_all(&args.out).map_err(|e| format!("cannot create {}: {e}", args.out.display()))?;
+    // The program's files are deleted once the pictures are written. Not every system allows programs to run in its
+    // temporary folder.
     let folder = tempfile::tempdir_in(path::absolute(&args.out)?)?;
     let out = folder.path();
     let (scene_file, result_file) = (out.join("scene.bin"), out.join("result.bin"));
@@ -73,7 +74,7 @@ fn run(args: &Args) -> Result<()> {
     command.arg(&scene_file).arg(&result_file);
     command.arg(args.isa.map_or("-".into(), |isa| (isa as i32).to_string()));
     command.args(&args.record);
-    let running = format!("running it at {}x{}", args.size.0, args.size.1);
+    let running = format!("running at {}x{}", args.size.0, args.size.1);
     say(step(&running, || Ok(native::run(&mut command)?))?);
     let outcome = exchange::read_outcome(&result_file, scene.objects.len(), args.size)?;
 
@@ -93,12 +94,12 @@ fn run(args: &Args) -> Result<()> {
     if wrong > 0 { Err("something visible was culled".into()) } else { Ok(()) }
 }
 
-/// Prints. The pictures are drawn even when nobody reads what is said.
+/// Prints. Errors are ignored: the pictures are drawn even if nobody reads the output.
 fn say(text: impl Display) {
     let _ = write!(io::stdout(), "{text}");
 }
 
-/// Runs something that may take a while, and says so meanwhile: by a spinner, or a line where there is no terminal.
+/// Runs something that may take a while and shows progress: a spinner, or a line if there is no terminal.
 fn step<T>(message: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let spinner = ProgressBar::new_spinner().with_message(message.to_owned());
     if spinner.is_hidden() {

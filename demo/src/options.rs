@@ -1,9 +1,9 @@
-//! What several programs let the command line choose.
+//! Command-line options shared by several programs.
 
 use clap::ValueEnum;
 use masked_occlusion_culling::{Implementation, UpdateRule};
 
-/// An update rule, in the numbers of the C interface.
+/// An update rule, with the values of the C interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Rule {
     ThreeLayer = 0,
@@ -12,7 +12,7 @@ pub enum Rule {
     FourLayer = 3,
 }
 
-/// An instruction set, in the numbers of the C++ class.
+/// An instruction set, with the values of the C++ class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Isa {
     Scalar = -1,
@@ -25,7 +25,7 @@ pub enum Isa {
 }
 
 impl Rule {
-    /// What it is called in tables and legends.
+    /// Its name in tables and legends.
     pub fn name(self) -> &'static str {
         match self {
             Rule::ThreeLayer => "three layers",
@@ -37,20 +37,20 @@ impl Rule {
 }
 
 impl Isa {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().into())
     }
 
-    /// Those of this processor, the lowest first.
+    /// Those of this processor, lowest first.
     pub fn available() -> Vec<Self> {
         let available = Implementation::available();
         Self::value_variants().iter().copied().filter(|isa| available.contains(&Implementation::from(*isa))).collect()
     }
 }
 
-/// Reads an instruction set of this processor from the command line: the library would silently take the best one in place of
-/// one that is not there.
+/// Parses an instruction set of this processor from the command line: for one that the processor does not have, the
+/// library would silently use the best one available.
 pub fn isa(text: &str) -> Result<Isa, String> {
     let available = Isa::available();
     available.iter().copied().find(|isa| isa.name() == text).ok_or_else(|| {

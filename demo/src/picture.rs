@@ -1,4 +1,4 @@
-//! What was culled, in four panels: the view, the occlusion buffer, what lies behind, and all of it from above.
+//! The result of culling in four panels: the view, the occlusion buffer, the hidden objects, and everything from above.
 
 use glam::{Mat4, Vec2, Vec3};
 
@@ -10,11 +10,11 @@ use crate::raster::{NOTHING, ZBuffer, orthographic};
 use crate::scene::Scene;
 use crate::shade::Light;
 
-/// Pixels of a panel; the picture is two by two of them.
+/// Size of a panel in pixels; the picture is two by two panels.
 const WIDTH: usize = 800;
 const HEIGHT: usize = 450;
 
-/// How much of what is drawn is seen from above through what covers it.
+/// Opacity with which drawn objects show through what covers them from above.
 const SHOWS_THROUGH: f32 = 0.15;
 
 const DRAWN: Vec3 = Vec3::new(0.36, 0.86, 0.74);
@@ -63,7 +63,7 @@ pub fn compose(scene: &Scene, camera: &Camera, outcome: &Outcome, size: (u32, u3
     picture
 }
 
-/// The largest size in a panel that has the shape of the occlusion buffer.
+/// The largest size within a panel with the aspect ratio of the occlusion buffer.
 fn fit((width, height): (u32, u32)) -> (usize, usize) {
     let (width, height) = (width as usize, height as usize);
     if width * HEIGHT >= height * WIDTH {
@@ -73,7 +73,7 @@ fn fit((width, height): (u32, u32)) -> (usize, usize) {
     }
 }
 
-/// What is drawn and nothing else, at twice the size.
+/// Only the objects that are drawn, at twice the size.
 fn view(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, (width, height): (usize, usize)) -> Image {
     let clip = camera.clip_from_world();
     let mut buffer = ZBuffer::new(width * 2, height * 2);
@@ -83,7 +83,7 @@ fn view(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, (width
     light.picture(scene, &buffer, &clip, |_, colour| colour, sky, Some((camera.eye, (hi - lo).length() * 2.5)))
 }
 
-/// The view in grey, with what was culled shining through.
+/// The view in grey, with the culled objects showing through.
 fn behind(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, view: &Image) -> Image {
     let clip = camera.clip_from_world();
     let mut buffer = ZBuffer::new(view.width, view.height);
@@ -95,7 +95,7 @@ fn behind(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, view
         *pixel = if buffer.owner[i].0 == NOTHING {
             grey * 0.62 + DARK * 0.3
         } else {
-            // Edges between objects stand out where neighbours differ.
+            // Edges between objects are drawn where neighbouring pixels differ.
             let neighbour = buffer.owner[if i % view.width == 0 { i } else { i - 1 }].0;
             let edge = if neighbour == buffer.owner[i].0 { 1.0 } else { 0.6 };
             grey * 0.22 + culled.pixels[i] * 0.82 * edge
@@ -104,7 +104,7 @@ fn behind(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light, view
     image
 }
 
-/// All objects from above, the camera on the left, looking to the right.
+/// All objects from above; the camera is on the left and looks to the right.
 fn from_above(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) -> Image {
     let ahead = (camera.look - camera.eye).reject_from_normalized(camera.up);
     let ahead = ahead.try_normalize().unwrap_or(camera.up.any_orthonormal_vector());
@@ -131,7 +131,7 @@ fn from_above(scene: &Scene, camera: &Camera, outcome: &Outcome, light: &Light) 
         let image = light.picture(scene, &buffer, &clip, paint, |_| DARK, None);
         (buffer, image)
     };
-    // What is on top has its own colour; what is drawn below it shows through a little.
+    // The topmost object has its own colour; drawn objects below it show through a little.
     let (_, mut image) = render(&|_| true);
     let (buffer, drawn) = render(&|fate| fate == Fate::Visible);
     for (i, pixel) in image.pixels.iter_mut().enumerate() {
@@ -183,7 +183,7 @@ mod tests {
         scene.add(mesh, true, false);
     }
 
-    /// A ground that is drawn, with a roof above half of it that is culled.
+    /// A drawn ground, half of it under a culled roof.
     #[test]
     fn from_above_what_is_on_top_keeps_its_colour() {
         let mut scene = Scene::default();

@@ -1,4 +1,4 @@
-//! Plays a recording: are the answers those that were recorded, and how long does it take?
+//! Plays a recording, compares the results with the recorded ones, and measures the time.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use masked_occlusion_culling::{
 use crate::depth_picture::{depth_picture, reduced};
 use crate::options::{Isa, Rule};
 
-/// So many differing answers are listed.
+/// Number of differing results that are listed.
 const LISTED: usize = 10;
 
 /// How a recording is played.
@@ -21,11 +21,11 @@ pub struct Options<'a> {
     pub rule: Rule,
     pub isa: Option<Isa>,
     pub repeats: u32,
-    /// Where the picture of the depths is written.
+    /// File for the picture of the depths.
     pub picture: PathBuf,
 }
 
-/// Plays, and says what it finds. An error where an answer differs from the one recorded.
+/// Plays the recording and prints the results. Fails if a result differs from the recorded one.
 pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let recording = Recording::load(options.file).map_err(|error| format!("{}: {error}", options.file.display()))?;
     let settings = Settings::default()
@@ -42,18 +42,18 @@ pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let mut depth = vec![0.0; width as usize * height as usize];
     moc.compute_pixel_depth_buffer(&mut depth, false)?;
     if let Some(folder) = options.picture.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        std::fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     }
     depth_picture(&depth, recording.resolution, reduced(recording.resolution)).save(&options.picture)?;
     say(&format!("depths: {}", options.picture.display()));
     if differ > 0 {
-        Err(format!("{differ} answers differ from those recorded (by another update rule? See --rule)").into())
+        Err(format!("{differ} results differ from the recorded ones (was another update rule used? See --rule)").into())
     } else {
         Ok(())
     }
 }
 
-/// Compares the answers; how many differ.
+/// Compares the results; returns how many differ.
 fn check(recording: &Recording, moc: &mut MaskedOcclusionCulling) -> crate::Result<usize> {
     let (mut number, mut known, mut differ) = (0, 0, 0);
     recording.play(moc, |call, answer| {
@@ -93,7 +93,7 @@ fn time(recording: &Recording, moc: &mut MaskedOcclusionCulling, repeats: u32) -
     Ok(Times(times))
 }
 
-/// Times of playing all of it, sorted; one at least.
+/// Times of playing the whole recording, sorted; at least one.
 struct Times(Vec<Duration>);
 
 impl core::fmt::Display for Times {
@@ -105,7 +105,7 @@ impl core::fmt::Display for Times {
     }
 }
 
-/// What is in a recording.
+/// A description of the recording's contents.
 #[derive(Default)]
 struct Content {
     resolution: (u32, u32),

@@ -1,23 +1,23 @@
-//! A plain z-buffer, for the pictures and to check what was culled. It shares nothing with the library.
+//! A plain z-buffer, for the pictures and to check the results. It shares no code with the library.
 
 use glam::camera::rh::view::look_to_mat4;
 use glam::{DVec4, Mat4, Vec3};
 
 use crate::scene::Object;
 
-/// What no triangle covers.
+/// The id of pixels that no triangle covers.
 pub const NOTHING: u32 = u32::MAX;
 
-/// For each pixel the nearest depth (clip-space z/w, larger is nearer) and whose it is.
+/// For each pixel the nearest depth (clip-space z/w, larger is nearer) and the object and triangle it belongs to.
 pub struct ZBuffer {
     pub width: usize,
     pub height: usize,
     pub depth: Vec<f32>,
     /// Object and triangle.
     pub owner: Vec<(u32, u32)>,
-    /// How much nearer than what is there a triangle must be, as a factor.
+    /// How much nearer than the stored depth a triangle must be, as a factor.
     pub margin: f32,
-    /// By how many pixels triangles are grown.
+    /// Number of pixels by which triangles are grown.
     pub grow: f64,
 }
 
@@ -34,7 +34,7 @@ impl ZBuffer {
         }
     }
 
-    /// Draws an object that is called `id`. Clips at w = `near`.
+    /// Draws an object with the given `id`. Clips at w = `near`.
     pub fn draw(&mut self, object: &Object, id: u32, clip_from_world: &Mat4, near: f32) {
         let Self { width, height, depth: nearest, owner, margin, grow } = self;
         each_pixel(object, (*width, *height), *grow, clip_from_world, near, |pixel, triangle, depth| {
@@ -46,8 +46,8 @@ impl ZBuffer {
     }
 }
 
-/// Calls `touch` with pixel, triangle and depth (clip-space z/w) for all pixels of all triangles of an object, which are grown
-/// by `grow` pixels and clipped at w = `near`.
+/// Calls `touch` with pixel, triangle and depth (clip-space z/w) for every pixel of every triangle of an object. The
+/// triangles are grown by `grow` pixels and clipped at w = `near`.
 pub fn each_pixel(
     object: &Object,
     size: (usize, usize),
@@ -80,12 +80,12 @@ fn each_pixel_of_triangle(
     mut touch: impl FnMut(usize, f32),
 ) {
     let (width, height) = (size.0 as f64, size.1 as f64);
-    // Vertices lie on a grid of 1/256 pixel, as in the library.
+    // Vertices are snapped to a grid of 1/256 pixel, as in the library.
     let snap = |v: f64| (v * 256.0).round() / 256.0;
     let mut p =
         clip.map(|c| (snap((c.x / c.w * 0.5 + 0.5) * width), snap((0.5 - c.y / c.w * 0.5) * height), c.z / c.w));
     let area = |p: &[(f64, f64, f64); 3]| (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
-    // y points down, so that fronts are negative.
+    // y points down, so front faces have negative area.
     match area(&p) {
         a if a < 0.0 => p.swap(1, 2),
         a if a > 0.0 && two_sided => {}
@@ -96,7 +96,7 @@ fn each_pixel_of_triangle(
     let rows = |v: f64, max: f64| v.clamp(0.0, max) as usize;
     let (top, bottom) = (p[0].1.min(p[1].1).min(p[2].1), p[0].1.max(p[1].1).max(p[2].1));
     let (left, right) = (p[0].0.min(p[1].0).min(p[2].0), p[0].0.max(p[1].0).max(p[2].0));
-    // a x + b y + c >= 0 inside of each edge, at pixel centres.
+    // a x + b y + c >= 0 on the inner side of each edge, at pixel centres.
     let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
         let (a, b) = (p[i].1 - p[j].1, p[j].0 - p[i].0);
         (a, b, -(a * p[i].0 + b * p[i].1) + grow * a.hypot(b))
@@ -145,10 +145,10 @@ fn clip_near(corners: &[DVec4; 3], near: f64) -> ([DVec4; 4], usize) {
     (polygon, n)
 }
 
-/// How many of the objects that `hidden` names have a pixel in front of all the others?
+/// The number of objects in `hidden` that have a pixel in front of all the others.
 ///
-/// Both sides of the comparison get the benefit of rounding: triangles are grown by half a step of the
-/// vertex grid, and a pixel counts when it is nearer by more than a float can be wrong.
+/// Both sides of the comparison get the benefit of rounding: triangles are grown by half a step of the vertex grid, and
+/// a pixel counts only if it is nearer by more than the rounding error of a float.
 pub fn falsely_hidden(objects: &[Object], hidden: &[bool], size: (usize, usize), clip: &Mat4, near: f32) -> usize {
     let mut buffer = ZBuffer { grow: 1.0 / 512.0, ..ZBuffer::new(size.0, size.1) };
     for wanted in [false, true] {
@@ -163,8 +163,8 @@ pub fn falsely_hidden(objects: &[Object], hidden: &[bool], size: (usize, usize),
     seen.len()
 }
 
-/// A view along `direction` without perspective, that shows all of `points` in `width` by `height`
-/// pixels; the picture's up is `up`. Depth is 1 nearest and 0 farthest.
+/// An orthographic view along `direction` that contains all of `points` in `width` by `height` pixels; `up` is up in
+/// the picture. Depth is 1 nearest and 0 farthest.
 pub fn orthographic(points: &[Vec3], direction: Vec3, up: Vec3, width: f32, height: f32) -> Mat4 {
     let view = look_to_mat4(Vec3::ZERO, direction, up);
     let (lo, hi) = crate::scene::bounds(points.iter().map(|p| view.transform_point3(*p)));

@@ -1,8 +1,8 @@
-//! What every other module speaks of: objects, each with a mesh of its own.
+//! Scenes: objects, each with its own mesh.
 
 use glam::Vec3;
 
-/// Triangles with a colour each. Counter-clockwise is outside, unless the object is two-sided.
+/// Triangles with a colour each. Counter-clockwise is front-facing, unless the object is two-sided.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
@@ -10,13 +10,13 @@ pub struct Mesh {
     pub colours: Vec<Vec3>,
 }
 
-/// A piece of the scene that is drawn or culled as a whole.
+/// A part of the scene that is drawn or culled as a whole.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub mesh: Mesh,
-    /// Is it worth drawing into the occlusion buffer?
+    /// Whether it is worth drawing as an occluder.
     pub occluder: bool,
-    /// May its triangles be seen from both sides?
+    /// Whether its triangles are visible from both sides.
     pub two_sided: bool,
     /// Bounding box.
     pub lo: Vec3,
@@ -24,7 +24,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// An object with the bounds of its mesh; `None` where the mesh holds no triangle.
+    /// An object with the bounds of its mesh; `None` if the mesh has no triangles.
     pub fn new(mesh: Mesh, occluder: bool, two_sided: bool) -> Option<Self> {
         if mesh.triangles.is_empty() {
             return None;
@@ -46,12 +46,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a mesh as an object, if there is anything in it.
+    /// Adds a mesh as an object, unless it is empty.
     pub fn add(&mut self, mesh: Mesh, occluder: bool, two_sided: bool) {
         self.objects.extend(Object::new(mesh, occluder, two_sided));
     }
 
-    /// The box around everything.
+    /// The bounding box of the scene.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         bounds(self.objects.iter().flat_map(|o| [o.lo, o.hi]))
     }
@@ -61,7 +61,7 @@ impl Scene {
     }
 }
 
-/// The smallest box around points.
+/// The bounding box of points.
 pub fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }

@@ -1,4 +1,4 @@
-//! Colour for what a z-buffer holds: the sun with its shadows, the sky, a little haze.
+//! Shades the contents of a z-buffer: the sun with its shadows, the sky, a little haze.
 
 use glam::{Mat4, Vec3};
 
@@ -15,13 +15,13 @@ pub struct Light {
     to_sun: Vec3,
     shadows: ZBuffer,
     shadow_from_world: Mat4,
-    /// How far to step off a surface before asking whether it is in the shade.
+    /// Offset from a surface for shadow tests.
     step: f32,
 }
 
 impl Light {
     pub fn new(scene: &Scene, up: Vec3, towards: Vec3) -> Self {
-        // The sun stands behind the viewer's shoulder.
+        // The sun is behind the viewer's shoulder.
         let ahead = towards.reject_from_normalized(up).try_normalize().unwrap_or(up.any_orthonormal_vector());
         let to_sun = (up * 1.15 - ahead * 0.55 + ahead.cross(up) * 0.75).normalize();
         let (lo, hi) = scene.bounds();
@@ -35,7 +35,7 @@ impl Light {
         Self { up, to_sun, shadows, shadow_from_world, step: (hi - lo).length() / side * 2.0 }
     }
 
-    /// How much of the sun reaches a point, from 0 to 1.
+    /// The fraction of sunlight that reaches a point, from 0 to 1.
     fn sun(&self, point: Vec3, normal: Vec3) -> f32 {
         let p = self.shadow_from_world.project_point3(point + normal * self.step);
         let side = SHADOW_MAP as f32;
@@ -49,7 +49,7 @@ impl Light {
         lit
     }
 
-    /// The light that a surface of a colour sends back.
+    /// The light reflected by a surface of this colour.
     fn shade(&self, colour: Vec3, point: Vec3, normal: Vec3) -> Vec3 {
         let sky = Vec3::new(0.42, 0.50, 0.62).lerp(Vec3::new(0.24, 0.21, 0.19), 0.5 - 0.5 * normal.dot(self.up));
         let facing = normal.dot(self.to_sun).max(0.0);
@@ -57,8 +57,8 @@ impl Light {
         colour.powf(2.2) * (sky + Vec3::new(1.35, 1.22, 1.0) * sun)
     }
 
-    /// The picture of what `buffer` holds, seen with `clip_from_world`. `paint` gives the colour of an
-    /// object's surface, from its own; `haze` the distance at which half of it is lost, and into what.
+    /// The picture of the contents of `buffer`, seen with `clip_from_world`. `paint` maps an object's own colour to the
+    /// one shown; `haze` is the distance at which half of the colour is lost, and the colour that it fades to.
     pub fn picture(
         &self,
         scene: &Scene,
@@ -83,7 +83,7 @@ impl Light {
             let owner = &scene.objects[object as usize];
             let [a, b, c] = owner.corners(triangle as usize);
             let normal = (b - a).cross(c - a).normalize_or(self.up);
-            // What is two-sided may show its back.
+            // Two-sided objects may show their back faces.
             let normal = if normal.dot(nearer - point) < 0.0 { -normal } else { normal };
             let colour = paint(object as usize, owner.mesh.colours[triangle as usize]);
             let mut light = self.shade(colour, point, normal);

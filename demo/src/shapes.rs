@@ -1,4 +1,4 @@
-//! Simple solids to build a town of, in metres, y up.
+//! Simple solids for the town, in metres, y up.
 
 use std::f32::consts::TAU;
 
@@ -22,7 +22,7 @@ impl Mesh {
         self.tapered(lo, hi, Vec2::ZERO, colour);
     }
 
-    /// A box whose top is drawn in by `inset` on each side, in x and z.
+    /// A box whose top is inset by `inset` on each side, in x and z.
     pub fn tapered(&mut self, lo: Vec3, hi: Vec3, inset: Vec2, colour: Vec3) {
         let corner = |x: bool, y: bool, z: bool| {
             let inset = if y { inset } else { Vec2::ZERO };
@@ -46,7 +46,7 @@ impl Mesh {
         }
     }
 
-    /// A roof over a rectangle, with its ridge along x; `hip` draws the ends of the ridge in.
+    /// A roof over a rectangle, with its ridge along x; `hip` shortens the ridge at both ends.
     pub fn roof(&mut self, lo: Vec3, hi: Vec3, hip: f32, roof: Vec3, gable: Vec3) {
         let middle = (lo.z + hi.z) / 2.0;
         let (left, right) = (vec3(lo.x + hip, hi.y, middle), vec3(hi.x - hip, hi.y, middle));
@@ -79,7 +79,7 @@ impl Mesh {
         }
     }
 
-    /// A ball of `8 * 4^n` triangles whose points `shape` may move in and out: it gets each direction.
+    /// A ball of `8 * 4^n` triangles; `shape` scales the radius in each direction.
     pub fn ball(&mut self, centre: Vec3, radius: Vec3, levels: u32, colour: Vec3, shape: impl Fn(Vec3) -> f32) {
         let mut faces = Vec::new();
         for sign in 0..8 {

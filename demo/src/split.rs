@@ -1,11 +1,11 @@
-//! Splitting meshes: what comes in one piece can only be culled in one piece.
+//! Splits meshes: an object can only be culled as a whole.
 
 use glam::Vec3;
 use indicatif::ProgressIterator;
 
 use crate::scene::{Mesh, Object, Scene, bounds};
 
-/// Splits every object of more than `max_triangles` into neighbouring pieces of at most that many.
+/// Splits every object of more than `max_triangles` into spatially compact pieces of at most that many.
 pub fn split(scene: Scene, max_triangles: usize) -> Scene {
     let mut pieces = Scene::default();
     for object in scene.objects.into_iter().progress() {
@@ -23,12 +23,12 @@ pub fn split(scene: Scene, max_triangles: usize) -> Scene {
     pieces
 }
 
-/// A piece size that cuts a scene into about a thousand objects, if it is large.
+/// A piece size that splits a large scene into about a thousand objects.
 pub fn piece_size(scene: &Scene) -> usize {
     (scene.num_triangles() / 1_000).clamp(64, 1_024)
 }
 
-/// Halves at the median along the longest side, until the pieces are small enough.
+/// Splits at the median along the longest side, until the pieces are small enough.
 fn halve(triangles: &mut [u32], centres: &[Vec3], max: usize, done: &mut impl FnMut(&[u32])) {
     if triangles.len() <= max.max(1) {
         return done(triangles);

@@ -4,19 +4,19 @@ use glam::{Mat4, Vec2, Vec3, vec2, vec3};
 
 use crate::scene::{Mesh, Scene};
 
-/// Blocks in each direction.
+/// Number of blocks in each direction.
 const BLOCKS: i32 = 9;
 /// The block without houses: the square.
 const SQUARE: i32 = BLOCKS / 2;
-/// From one street's middle to the next one's, in metres.
+/// Distance between the centre lines of adjacent streets, in metres.
 const PITCH: f32 = 58.0;
-/// Width of a street, and of the pavement on each of its sides.
+/// Width of a street, and of the pavement on each side.
 const STREET: f32 = 9.0;
 const PAVEMENT: f32 = 3.0;
-/// From the front of a house to its back.
+/// Depth of a house, from front to back.
 const DEPTH: f32 = 10.0;
 
-/// Where the default camera stands and looks.
+/// Position and target of the default camera.
 pub fn camera() -> (Vec3, Vec3) {
     let street = PITCH / 2.0;
     let stand = bend(vec2(street + 2.0, 1.02 * PITCH));
@@ -38,13 +38,13 @@ pub fn generate() -> Scene {
     town.scene
 }
 
-/// Bends the straight plan, so that streets have no far end to look at.
+/// Bends the straight plan, so that no street can be seen from end to end.
 fn bend(p: Vec2) -> Vec2 {
     p + vec2(16.0 * (p.y / 75.0).sin() + 5.0 * (p.y / 31.0 + 1.0).sin(), 13.0 * (p.x / 82.0 + 0.8).sin())
 }
 
-/// Moves what is built around the origin, with its front towards +z, to a place of the plan.
-/// `front` is the direction in the plan that +z becomes.
+/// Moves geometry built around the origin, with its front towards +z, to its place in the plan. `front` is the
+/// direction in the plan that +z is mapped to.
 fn place(at: Vec2, front: Vec2) -> Mat4 {
     let middle = bend(at);
     let along = (bend(at + front.perp()) - bend(at - front.perp())).normalize();
@@ -91,7 +91,7 @@ struct Town {
 }
 
 impl Town {
-    /// The ground under one block and half the streets around it.
+    /// The ground of one block and half of the streets around it.
     fn street_surface(&mut self, lo: Vec2) {
         let mut mesh = Mesh::default();
         patch(&mut mesh, lo, lo + PITCH, 0.0, rgb(0x6b6c70));
@@ -108,7 +108,7 @@ impl Town {
             return self.square((lo + hi) / 2.0, hi - lo);
         }
 
-        // Two sides of the block have the corners, the other two lie between them.
+        // Two sides of the block include the corners; the other two fit between them.
         self.terrace(vec2(lo.x, hi.y), vec2(hi.x, hi.y), Vec2::Y);
         self.terrace(vec2(hi.x, lo.y), vec2(lo.x, lo.y), Vec2::NEG_Y);
         self.terrace(vec2(hi.x, hi.y - DEPTH), vec2(hi.x, lo.y + DEPTH), Vec2::X);
@@ -148,7 +148,7 @@ impl Town {
         }
     }
 
-    /// A row of houses whose fronts stand on the line and face `front`.
+    /// A row of houses whose fronts are on the line and face `front`.
     fn terrace(&mut self, from: Vec2, to: Vec2, front: Vec2) {
         let length = (to - from).length();
         let along = (to - from) / length;
@@ -170,7 +170,7 @@ impl Town {
         let eaves = 0.5 + storeys as f32 * storey;
         let wall = rgb(self.random.pick(&WALLS)) * self.random.range(0.9, 1.05);
         let roof = rgb(self.random.pick(&ROOFS)) * self.random.range(0.85, 1.1);
-        // A little wider than its plot, for streets bend.
+        // A little wider than its plot, because streets bend.
         let (w, d) = (width / 2.0 + 0.25, DEPTH / 2.0);
 
         let mut body = Mesh::default();
@@ -187,7 +187,7 @@ impl Town {
         self.details(place, w, d, storeys, storey, eaves, wall);
     }
 
-    /// Windows with ledges, a door, a chimney: too small to hide anything, so no occluder.
+    /// Windows with ledges, a door, a chimney: too small to be occluders.
     #[allow(clippy::too_many_arguments)]
     fn details(&mut self, place: Mat4, w: f32, d: f32, storeys: i32, storey: f32, eaves: f32, wall: Vec3) {
         let mut trim = Mesh::default();
@@ -308,7 +308,7 @@ impl Town {
     }
 }
 
-/// A bent rectangle of ground with a rim that goes down to the street.
+/// A bent rectangle of ground with a kerb that goes down to the street.
 fn patch(mesh: &mut Mesh, lo: Vec2, hi: Vec2, y: f32, colour: Vec3) {
     const PARTS: i32 = 6;
     let at = |i: i32, j: i32, y: f32| {

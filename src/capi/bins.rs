@@ -1,4 +1,4 @@
-//! Sorting triangles into the lists of bins.
+//! Binning triangles.
 
 use super::lifecycle::BINS;
 use super::mesh::{Describe, MOC_Mesh, MeshArguments};
@@ -9,25 +9,25 @@ use super::types::{MOC_TriList, MOC_VertexLayout};
 use crate::bins::FLOATS_PER_TRIANGLE;
 use crate::{CullingResult, MaskedOcclusionCulling, TriList};
 
-/// The lists of the bins, in C's form.
+/// The lists of the bins, as C passes them.
 struct BinArguments {
     lists: *mut MOC_TriList,
     bins_w: u32,
     bins_h: u32,
 }
 
-/// Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be
-/// drawn by MOC_RenderTrilist. Nothing is drawn.
+/// Projects triangles and appends each one that may be drawn to the list of every bin that it overlaps, to be drawn
+/// later by MOC_RenderTrilist. Nothing is drawn.
 ///
-/// `lists` are `bins_w` times `bins_h` lists, row by row, which the caller has given memory and a `count`, 0 at first; the
-/// bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of MOC_RenderTriangles. `result` (null is
-/// allowed) gets MOC_VIEW_CULLED when no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may
-/// bin at once, into lists of their own.
+/// `lists` is an array of `bins_w` times `bins_h` lists, row by row; the caller has set their `data`, `capacity` and
+/// `count` (0 at first). The bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of
+/// MOC_RenderTriangles. `result` (may be null) receives MOC_VIEW_CULLED if no triangle may be drawn, otherwise
+/// MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may bin at once, each into its own lists.
 ///
-/// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
-/// a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
-/// alignment; MOC_STATUS_INVALID_SIZE also for a capacity larger than memory can hold: nothing is binned. MOC_STATUS_LIST_FULL:
-/// a list ran out of room; what fitted is in the lists.
+/// Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with a
+/// capacity but no `data`; MOC_STATUS_INVALID_LAYOUT also if `lists` is misaligned; MOC_STATUS_INVALID_SIZE also for a
+/// capacity larger than memory can hold. In all these cases nothing is binned. MOC_STATUS_LIST_FULL: a list is full;
+/// the triangles that fitted are in the lists.
 ///
 /// # Safety
 /// As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -62,8 +62,8 @@ pub unsafe extern "C" fn MOC_BinTriangles(
     unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
 }
 
-/// As MOC_BinTriangles, with the length of the vertex array in floats: an index that names a vertex outside
-/// of it is an error, and nothing is binned.
+/// As MOC_BinTriangles, with the length of the vertex array in floats: an index of a vertex that is not entirely inside
+/// the array is an error, and nothing is binned.
 ///
 /// Errors: as MOC_BinTriangles and MOC_RenderTrianglesChecked.
 ///
@@ -99,9 +99,9 @@ pub unsafe extern "C" fn MOC_BinTrianglesChecked(
     unsafe { guard_result(result, || bin(moc, mesh, BinArguments { lists, bins_w, bins_h })) }
 }
 
-/// MOC_BinTriangles or MOC_BinTrianglesChecked of a mesh that a struct describes.
+/// MOC_BinTriangles or MOC_BinTrianglesChecked for a mesh described by a struct.
 ///
-/// Errors: as there and as MOC_RenderMesh.
+/// Errors: as those and as MOC_RenderMesh.
 ///
 /// # Safety
 /// As MOC_TestMesh. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data` of each for

@@ -1,4 +1,4 @@
-//! The allocator callbacks of an object, and those that it has when none were given.
+//! The allocator callbacks of an object, and the default pair.
 
 use core::ffi::c_void;
 use std::alloc::Layout;
@@ -8,8 +8,8 @@ use super::status::{MOC_Status, guard};
 use super::types::{MOC_AlignedAlloc, MOC_AlignedFree};
 use crate::MaskedOcclusionCulling;
 
-/// Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
-/// allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+/// Writes the callbacks that the object was created with or, if there were none, a pair that uses the system's
+/// allocator. They may still be called, and passed to other objects, after this object is destroyed. Neither pointer
 /// may be null.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn MOC_GetAllocFreeCallback(
     })
 }
 
-/// What precedes each block of [`system_alloc`], so that [`system_free`] knows its layout.
+/// Stored before each block of [`system_alloc`], so that [`system_free`] knows its layout.
 #[derive(Clone, Copy)]
 struct Header {
     size: usize,

@@ -1,4 +1,4 @@
-//! What changes the buffer: clearing, merging, drawing triangles and lists.
+//! Calls that change the buffer: clearing, merging, drawing triangles and lists.
 
 use super::mesh::{Describe, MOC_Mesh, MeshArguments};
 use super::pointers::{check_idle, check_length, idle_object_mut, object, objects, read, with_buffer};
@@ -10,7 +10,8 @@ use crate::{CullingResult, MaskedOcclusionCulling, ScissorRect, TriList};
 
 const EMPTY: &str = "one of the objects has no buffer: call MOC_SetResolution first";
 
-/// Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
+/// Clears every pixel to infinitely far: the first call of a frame. It writes little more than four bytes per 32x8
+/// tile.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
 ///
@@ -27,9 +28,9 @@ pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MO
     })
 }
 
-/// Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
-/// into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
-/// differ in instruction set and update rule. Merging an object with itself changes nothing.
+/// Merges the buffer of `other` into that of `moc`: afterwards `moc` hides what either of them hid, except for what its
+/// few depths cannot represent, and never more. `other` is not changed. The two must have the same resolution and
+/// MOC_YAxis; they may differ in instruction set and update rule. Merging an object with itself changes nothing.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
 /// either.
@@ -58,10 +59,10 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
     })
 }
 
-/// Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
-/// faster. Where `others` names `moc` itself, that changes nothing.
+/// Merges the buffers of `count` other objects into that of `moc`: the same bits as calling MOC_MergeBuffer for each of
+/// them in that order, but faster. If `moc` itself is among `others`, that entry changes nothing.
 ///
-/// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array: nothing is folded.
+/// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array. On an error nothing is merged.
 ///
 /// # Safety
 /// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
@@ -83,7 +84,7 @@ pub unsafe extern "C" fn MOC_MergeBuffers(
     })
 }
 
-/// Refuses objects that cannot be merged now.
+/// Refuses objects that cannot currently be merged.
 pub(super) fn check_to_merge(moc: &MaskedOcclusionCulling, others: &[&MaskedOcclusionCulling]) -> Result<(), Refusal> {
     let check = |other: &MaskedOcclusionCulling| {
         check_idle(other)?;
@@ -93,22 +94,24 @@ pub(super) fn check_to_merge(moc: &MaskedOcclusionCulling, others: &[&MaskedOccl
     all.because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY)
 }
 
-/// Draws occluders: from now on they hide what is behind them. Nearest first is fastest and hides most.
+/// Draws occluders: from now on they hide what is behind them. Front-to-back order is fastest and hides most.
 ///
-/// - `vertices`: the x of the first vertex, at any address. Null is allowed when there are no triangles.
-/// - `triangles`: three indices a triangle. Null is allowed when there are none.
-/// - `n_triangles`: how many triangles, 0 or more.
-/// - `model_to_clip`: 16 floats m that take x, y, z of the model to clip space: x' = x*m[0] + y*m[4] + z*m[8] + m[12],
-///   y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. That is the memory
-///   of OpenGL's matrices and of Direct3D's (docs/conventions.md). Null: the vertices are in clip space.
-/// - `winding`: a MOC_BackfaceWinding, of the triangle as it is seen on the screen.
-/// - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right.
-/// - `layout`: where the coordinates are. Null: (16, 4, 12), x, y, z, w packed. With a matrix the last offset names z
-///   instead of w, so that null does not fit: pass (12, 4, 8) for x, y, z, (16, 4, 8) for x, y, z and a fourth.
-/// - `result`: null is allowed. Gets MOC_VIEW_CULLED when every triangle lies outside of the view, faces away or is
-///   dropped, or there is none; else MOC_VISIBLE.
+/// - `vertices`: the x of the first vertex, at any address. May be null if there are no triangles.
+/// - `triangles`: three indices per triangle. May be null if there are no triangles.
+/// - `n_triangles`: the number of triangles, 0 or more.
+/// - `model_to_clip`: 16 floats m that transform the model's x, y, z to clip space: x' = x*m[0] + y*m[4] + z*m[8] +
+///   m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. OpenGL and
+///   Direct3D store their matrices in this order (docs/conventions.md). Null: the vertices are in clip space.
+/// - `winding`: a MOC_BackfaceWinding, of the triangle as seen on the screen.
+/// - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always correct.
+/// - `layout`: where the coordinates are. Null: (16, 4, 12), packed x, y, z, w. With a matrix the last offset is that
+///   of z instead of w, so null is wrong: pass (12, 4, 8) for packed x, y, z, or (16, 4, 8) for x, y, z and a fourth
+///   float.
+/// - `result`: may be null. Receives MOC_VIEW_CULLED if every triangle is outside the view, back-facing or dropped, or
+///   if there are none; otherwise MOC_VISIBLE.
 ///
-/// Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
+/// Triangles with a NaN, an infinite coordinate, or a corner farther than 2^40 are dropped; MOC_GetDroppedTriangles
+/// counts them.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
 /// or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
@@ -118,7 +121,7 @@ pub(super) fn check_to_merge(moc: &MaskedOcclusionCulling, others: &[&MaskedOccl
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
 /// matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
 /// whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
-/// y at 4 and w (or z) at 8 or 12. MOC_RenderTrianglesChecked is for indices that are not known to be right.
+/// y at 4 and w (or z) at 8 or 12. For untrusted indices use MOC_RenderTrianglesChecked.
 #[unsafe(export_name = symbol!(MOC_RenderTriangles))]
 pub unsafe extern "C" fn MOC_RenderTriangles(
     moc: *mut MaskedOcclusionCulling,
@@ -145,11 +148,11 @@ pub unsafe extern "C" fn MOC_RenderTriangles(
     unsafe { guard_result(result, || render(moc, mesh)) }
 }
 
-/// As MOC_RenderTriangles, with the length of the vertex array, counted in floats from `vertices` on: an index that names a
-/// vertex that does not lie whole within it is an error, and nothing is drawn.
+/// As MOC_RenderTriangles, with the length of the vertex array in floats, counted from `vertices`: an index of a vertex
+/// that is not entirely inside the array is an error, and nothing is drawn.
 ///
-/// Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT for a
-/// negative offset too.
+/// Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT also for a negative
+/// offset.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `vertices` can be
@@ -181,9 +184,10 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
     unsafe { guard_result(result, || render(moc, mesh)) }
 }
 
-/// MOC_RenderTriangles or MOC_RenderTrianglesChecked of a mesh that a struct describes.
+/// MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
 ///
-/// Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or a
+/// Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small
+/// or a
 /// `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
 ///
 /// # Safety
@@ -210,17 +214,17 @@ unsafe fn render(moc: *mut MaskedOcclusionCulling, mesh: impl Describe) -> Resul
     Ok(moc.render_mesh(&mesh.mesh()))
 }
 
-/// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
-/// use to objects of the resolution and MOC_YAxis of the one that filled it.
+/// Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list is not changed. It may be
+/// drawn into any object with the same resolution and MOC_YAxis as the one that filled it.
 ///
-/// The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
-/// rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one
-/// object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
+/// The rectangle's x must be multiples of 32 and its y multiples of 8; max_x may also be the width of the buffer, or
+/// that rounded up to a multiple of 32, and max_y the height, or that rounded up to a multiple of 8. Several threads
+/// may draw into one object at once, in rectangles that do not overlap, so that each 32x8 tile belongs to one thread.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
-/// MOC_STATUS_BUSY while a pool is drawing into the object,
-/// MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
-/// its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
+/// Errors: MOC_STATUS_NULL_POINTER (also for a list that is not empty but has no `data`), MOC_STATUS_NO_BUFFER,
+/// MOC_STATUS_BUSY while a pool is drawing into the object, MOC_STATUS_INVALID_SIZE for any other rectangle or for a
+/// list whose `count` is above its `capacity` or larger than memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is
+/// misaligned. On an error nothing is drawn.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping

@@ -1,4 +1,4 @@
-//! Making, sizing and freeing an object, and its small properties.
+//! Creating, sizing and destroying an object, and its simple properties.
 
 use std::alloc::Layout;
 
@@ -19,8 +19,8 @@ const DEFAULTS: MOC_Settings = MOC_Settings {
     call_alloc: None,
 };
 
-/// The memory of the object itself. Aligned as its buffers are, and a whole number of alignments, so that
-/// one callback serves both and may be C11's aligned_alloc.
+/// The memory layout of the object itself: aligned like its buffers, with a size that is a multiple of the alignment,
+/// so that one callback serves both and may be C11's aligned_alloc.
 fn object_layout() -> Result<Layout, MOC_Status> {
     let layout = Layout::new::<MaskedOcclusionCulling>();
     Ok(layout.align_to(64).map_err(|_| MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?.pad_to_align())
@@ -29,8 +29,8 @@ fn object_layout() -> Result<Layout, MOC_Status> {
 const SETTINGS_SIZE: Refusal =
     Refusal::new(MOC_Status::MOC_STATUS_INVALID_SIZE, "size is less than sizeof(MOC_Settings)");
 
-/// Writes the default settings to `out`: those that MOC_Create takes for null. `out->size` is sizeof(MOC_Settings), set by the
-/// caller, and stays.
+/// Writes the default settings to `out`: those that MOC_Create uses if its `settings` are null. The caller sets
+/// `out->size` to sizeof(MOC_Settings) before the call; it is not changed.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
@@ -48,16 +48,16 @@ pub unsafe extern "C" fn MOC_DefaultSettings(out: *mut MOC_Settings) -> MOC_Stat
     })
 }
 
-/// Makes an object without a buffer, on the best instruction set that the processor has and `settings`
-/// allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
-/// caller gives the object back to MOC_Destroy.
+/// Creates an object without a buffer and writes it to `out` (null on errors). It uses the best instruction set that
+/// the processor supports and `settings` allow. `settings` are copied; null means the defaults. The caller destroys the
+/// object with MOC_Destroy.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_SIZE for a `size` that is too
-/// small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
+/// Errors: MOC_STATUS_NULL_POINTER (if `out` is null, or only one of `alloc` and `free`), MOC_STATUS_INVALID_SIZE for a
+/// `size` that is too small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
 ///
 /// # Safety
-/// `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The callbacks do what
-/// MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
+/// `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The
+/// callbacks behave as documented for MOC_AlignedAlloc and MOC_AlignedFree until the object is destroyed.
 #[unsafe(export_name = symbol!(MOC_Create))]
 pub unsafe extern "C" fn MOC_Create(
     settings: *const MOC_Settings,
@@ -104,8 +104,8 @@ pub unsafe extern "C" fn MOC_Create(
     })
 }
 
-/// Frees the object and its buffer, and ends its recording. A pool that draws into it first draws what was submitted, and has
-/// no object afterwards. Null is allowed.
+/// Frees the object and its buffer, and ends its recording. If a pool draws into the object, it first draws everything
+/// submitted, and has no object afterwards. Null is allowed.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -128,17 +128,17 @@ pub unsafe extern "C" fn MOC_Destroy(moc: *mut MaskedOcclusionCulling) -> MOC_St
 
 pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 
-/// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
-/// already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
-/// MOC_UPDATE_RULE_FOUR_LAYER).
+/// Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. If the size does not
+/// change, the buffer is only cleared. Each sub-tile of 8x4 pixels takes 20 bytes (12 with MOC_UPDATE_RULE_QUICK and
+/// MOC_UPDATE_RULE_ACCURATE, 28 with MOC_UPDATE_RULE_FOUR_LAYER).
 ///
-/// It may be smaller than the screen: that takes less time and culls less. But MOC_OCCLUDED then means hidden at the buffer's
-/// pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the screen shows through
-/// it. At 320x180 for a screen of 1920x1080, gaps of 5 screen pixels can. docs/guide.md says what to do about it.
+/// The buffer may be smaller than the screen: that is faster and culls less. But MOC_OCCLUDED then means hidden at the
+/// buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the
+/// screen shows through it. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen pixels can close.
+/// docs/guide.md says what to do about it.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is drawing into
-/// the object. The object keeps
-/// the buffer that it had.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is
+/// drawing into the object. On an error the object keeps its old buffer.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
@@ -175,12 +175,12 @@ pub unsafe extern "C" fn MOC_GetResolution(
 
 pub(super) const BINS: &str = "bins_w or bins_h is 0, or so large that a bin is smaller than 32 by 8 pixels";
 
-/// Writes the size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
-/// rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and row of
-/// bins reach to the buffer's edge.
+/// Writes the size in pixels of a bin when the buffer is divided into `bins_w` by `bins_h` bins: the buffer's width
+/// divided by `bins_w`, rounded down to a multiple of 32, and its height divided by `bins_h`, rounded down to a
+/// multiple of 8. The last column and row of bins extend to the buffer's edge.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and MOC_STATUS_INVALID_SIZE for no bins or bins
-/// smaller than 32 by 8: 0 by 0 is written.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER; MOC_STATUS_INVALID_SIZE if a bin count is 0 or bins would be
+/// smaller than 32 by 8. After the last two, 0 by 0 is written.
 ///
 /// # Safety
 /// As MOC_GetResolution.
@@ -205,12 +205,12 @@ pub unsafe extern "C" fn MOC_ComputeBinWidthHeight(
 
 pub(super) const NEAR: &str = "the near plane is NaN or infinite";
 
-/// Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
-/// cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
-/// visible. So the camera's own near plane culls more.
+/// Sets the near plane, in clip-space w, for calls whose clip planes include MOC_CLIP_PLANE_NEAR: geometry nearer than
+/// the plane is clipped. With 0, the default, or any value below 2^-30, only geometry behind the eye is clipped, and
+/// occludees that reach behind it count as visible; so passing the camera's own near plane culls more.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity: the plane stays where
-/// it was.
+/// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity, in which case the plane does not
+/// change.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.

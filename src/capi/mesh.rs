@@ -1,4 +1,4 @@
-//! The arguments that describe a mesh, as they come from C and as the kernel wants them.
+//! The arguments that describe a mesh, converted from C's form to the kernel's.
 
 use core::ffi::c_void;
 
@@ -11,68 +11,69 @@ use crate::source::Mesh;
 use crate::vertices::{VertexSource, vertex_count};
 use crate::{DrawOptions, MaskedOcclusionCulling, VertexLayout};
 
-/// As the `vertex_count` of a MOC_Mesh: the number is not known, and the indices are trusted.
+/// The `vertex_count` of a MOC_Mesh whose number of vertices is unknown: its indices are trusted.
 pub const MOC_UNCHECKED: u32 = 0xffff_ffff;
 
-/// Triangles to be drawn, tested, binned or recorded. Zero the struct, then set `size` and what the mesh has.
+/// Triangles to be drawn, tested, binned or recorded. Zero the struct, then set `size` and the fields that the mesh
+/// needs.
 ///
-/// Every vertex below `vertex_count` has to be readable: its x, y and w (or z), and all between in vertices of 12 or 16 bytes
-/// with y at 4 and w (or z) at 8 or 12. With MOC_UNCHECKED that holds for every vertex from the lowest to the highest index,
-/// whether or not an index names it.
+/// Every vertex below `vertex_count` must be readable: its x, y and w (or z), and for vertices of 12 or 16 bytes with y
+/// at 4 and w (or z) at 8 or 12, also everything in between. With MOC_UNCHECKED this applies to every vertex from the
+/// lowest to the highest index, whether or not an index refers to it.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_Mesh {
     /// sizeof(MOC_Mesh).
     pub size: u32,
-    /// Bytes of an index: 4, or 0, which means 4.
+    /// Size of an index in bytes: 4, or 0, which also means 4.
     pub index_size: u32,
     /// The x of the first vertex, at any address. Null is allowed when there are no triangles.
     pub vertices: *const f32,
     /// The indices, `uint32_t`, three per triangle. Null is allowed when there are no triangles.
     pub indices: *const c_void,
-    /// How many vertices there are: an index that is not below is refused. MOC_UNCHECKED: indices are trusted.
+    /// Number of vertices: a mesh with an index that is not below it is refused. MOC_UNCHECKED: indices are trusted.
     pub vertex_count: u32,
-    /// How many triangles, 0 to INT32_MAX.
+    /// Number of triangles, 0 to INT32_MAX.
     pub triangle_count: u32,
     /// 16 floats, as in MOC_RenderTriangles. Null: the vertices are in clip space.
     pub model_to_clip: *const f32,
-    /// Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. With a matrix the last
-    /// offset names z, without one w. Offsets may be negative.
+    /// Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. The last offset is
+    /// that of z with a matrix, of w without one. Offsets may be negative.
     pub layout: *const MOC_VertexLayout,
-    /// A MOC_BackfaceWinding, of the triangle as it is seen on the screen. Zero is MOC_BACKFACE_NONE: both sides count.
+    /// A MOC_BackfaceWinding, of the triangle as seen on the screen. Zero is MOC_BACKFACE_NONE: both sides are drawn.
     pub winding: i32,
-    /// MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right; zero is MOC_CLIP_PLANE_NONE.
+    /// MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always correct; zero is MOC_CLIP_PLANE_NONE.
     pub clip_planes: i32,
 }
 
-/// What a caller says of a mesh.
+/// A caller's description of a mesh.
 pub(super) trait Describe {
     /// # Safety
-    /// Each pointer is null or can be read as far as the description says.
+    /// Each pointer is null or can be read to the extent that the description states.
     unsafe fn describe(&self) -> Result<Description, Refusal>;
 
-    /// Checks what can be checked.
+    /// Checks everything that can be checked.
     ///
     /// # Safety
-    /// Each pointer is null or can be read: the indices as many as there are, the matrix for 16 floats, and the vertices as far
-    /// as their number says or, without that, from the lowest to the highest index.
+    /// Each pointer is null or can be read: all of the indices, the matrix for 16 floats, and the vertices up to their
+    /// stated number or, without one, from the lowest to the highest index.
     unsafe fn check<'a>(&self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Refusal> {
         // SAFETY: the caller's contract.
         unsafe { self.describe()?.check(moc) }
     }
 }
 
-/// How far vertices can be read.
+/// How many vertices can be read.
 enum Extent {
-    /// As far as the indices say.
+    /// All that the indices refer to.
     Trusted,
-    /// So many floats from the first x.
+    /// As many as fit in this number of floats from the first x.
     Floats(usize),
-    /// So many vertices.
+    /// This number.
     Vertices(usize),
 }
 
-/// A mesh in either form of C.
+/// A mesh from either of the two C forms.
 pub(super) struct Description {
     vertices: *const f32,
     extent: Extent,
@@ -93,10 +94,10 @@ struct Names {
     out_of_range: &'static str,
 }
 
-/// The arguments of a draw, a query or a binning, one by one.
+/// The arguments of a draw, a query or a binning call, passed one by one.
 pub(super) struct MeshArguments {
     pub vertices: *const f32,
-    /// How many floats there are from `vertices` on, where the caller says so.
+    /// Number of floats from `vertices` on, if the caller stated it.
     pub vertex_floats: Option<usize>,
     pub triangles: *const u32,
     pub n_triangles: i32,
@@ -222,7 +223,7 @@ impl Description {
     }
 }
 
-/// A mesh, checked as far as it can be.
+/// A mesh that has passed every check that can be made.
 pub(super) struct CheckedMesh<'a> {
     vertices: VertexSource,
     triangles: &'a [u32],
@@ -233,7 +234,7 @@ pub(super) struct CheckedMesh<'a> {
 impl CheckedMesh<'_> {
     pub fn mesh(&self) -> Mesh<'_> {
         let Self { vertices, triangles, matrix, options } = self;
-        // SAFETY: by the contract of `Describe::check`, the vertices can be read as far as the indices name them.
+        // SAFETY: by the contract of `Describe::check`, every vertex that an index refers to can be read.
         unsafe { Mesh::new(*vertices, matrix.as_ref(), triangles, options) }
     }
 }

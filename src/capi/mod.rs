@@ -4,7 +4,7 @@
 //! a status. No panic crosses the boundary. `include/masked_occlusion_culling.h` is generated from these
 //! files, so their doc comments are written for C programmers.
 #![allow(non_camel_case_types, non_snake_case)]
-// `m[0]` is C, and no link.
+// `m[0]` is C, not a link.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 /// The name under which a function is exported: this build's prefix, passed on by build.rs, followed by its own name.

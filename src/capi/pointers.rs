@@ -1,4 +1,4 @@
-//! From the caller's pointers to references and slices, with the checks that can be made.
+//! Turns the caller's pointers into references and slices, with the checks that can be made.
 
 use super::refusal::{Because, Refusal};
 use super::status::MOC_Status;
@@ -37,12 +37,12 @@ pub(super) unsafe fn idle_object_mut<'a>(
     }
 }
 
-/// Refuses what would change or copy the buffer alongside the object's pool.
+/// Refuses calls that would change or copy the buffer while the object's pool draws into it.
 pub(super) fn check_idle(moc: &MaskedOcclusionCulling) -> Result<(), MOC_Status> {
     if moc.attachment().is_busy() { Err(MOC_Status::MOC_STATUS_BUSY) } else { Ok(()) }
 }
 
-/// The object, which the call needs to have a buffer.
+/// The object, for a call that needs it to have a buffer.
 #[inline]
 pub(super) fn with_buffer(moc: &MaskedOcclusionCulling) -> Result<&MaskedOcclusionCulling, MOC_Status> {
     if moc.has_buffer() { Ok(moc) } else { Err(MOC_Status::MOC_STATUS_NO_BUFFER) }
@@ -82,7 +82,7 @@ pub(super) unsafe fn slice<'a, T>(data: *const T, len: usize) -> Result<&'a [T],
     Ok(unsafe { core::slice::from_raw_parts(data, len) })
 }
 
-/// As [`slice`], to be written.
+/// As [`slice`], but mutable.
 ///
 /// # Safety
 /// `data` is null or holds `len` elements that nobody else uses for `'a`.
@@ -108,7 +108,7 @@ fn check_array<T>(data: *const T, len: usize) -> Result<(), MOC_Status> {
     check_length::<T>(len)
 }
 
-/// Refuses more elements than an array can have: with 32-bit pointers, C's counts exceed that.
+/// Refuses more elements than an array can have: with 32-bit pointers, C's counts can exceed that.
 pub(super) fn check_length<T>(len: usize) -> Result<(), MOC_Status> {
     match len.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
@@ -116,7 +116,7 @@ pub(super) fn check_length<T>(len: usize) -> Result<(), MOC_Status> {
     }
 }
 
-/// What a pointer names, wherever it is aligned; nothing where it is null.
+/// Reads what a pointer points to, whatever its alignment; `None` if it is null.
 ///
 /// # Safety
 /// `data` is null or can be read.
@@ -125,7 +125,7 @@ pub(super) unsafe fn read<T: Copy>(data: *const T) -> Option<T> {
     if data.is_null() { None } else { Some(unsafe { data.read_unaligned() }) }
 }
 
-/// The size with which a struct begins.
+/// Reads the size with which a struct begins.
 ///
 /// # Safety
 /// `data` is null or can be read for four bytes.
@@ -137,7 +137,7 @@ pub(super) unsafe fn read_size<T>(data: *const T) -> Option<usize> {
 /// # Safety
 /// `out` can be written.
 pub(super) unsafe fn write<T: Copy>(out: *mut T, value: T) {
-    // SAFETY: the caller's contract; C does not promise the alignment.
+    // SAFETY: the caller's contract; C does not guarantee the alignment.
     unsafe { out.write_unaligned(value) }
 }
 
@@ -150,7 +150,7 @@ pub(super) fn check_out<T>(out: *mut T) -> Result<(), Refusal> {
     }
 }
 
-/// Writes a width and a height, or 0 by 0 on an error, which is returned.
+/// Writes a width and a height, or 0 by 0 for an error, which is returned.
 ///
 /// # Safety
 /// The pointers are null or can be written.

@@ -14,7 +14,7 @@ use crate::{CullingThreadpool, Error, MaskedOcclusionCulling, ThreadStart, Threa
 #[derive(Debug)]
 pub struct MOC_Threadpool {
     pub(super) pool: CullingThreadpool,
-    /// What later calls without their own matrix are drawn with.
+    /// The matrices and layouts for calls that do not pass their own.
     pub(super) state: PoolState,
 }
 
@@ -59,7 +59,7 @@ pub struct MOC_ThreadpoolSettings {
     pub processors: u32,
     /// Number of the program's own threads that will call MOC_ThreadpoolWorkOnce. It only affects the number of bins.
     pub external_threads: u32,
-    /// 0.
+    /// Must be 0.
     pub reserved: u32,
     /// Prefix of the thread names, in UTF-8; the thread's number is appended. Null: "culling". It is copied.
     pub thread_name: *const c_char,
@@ -109,27 +109,28 @@ impl MOC_ThreadpoolSettings {
     }
 }
 
-/// Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
-/// besides the caller's, there are fewer threads, but one at least; 0: as many processors as the system says. The threads sleep
-/// until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to
+/// Creates a pool of `threads` threads (0 to 1024) and writes it to `out` (null on errors). If fewer of the
+/// `processors` are left besides the caller's, fewer threads are started, but at least one; `processors` 0 means as
+/// many as the system reports. The threads sleep until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+/// The caller destroys the pool with MOC_ThreadpoolDestroy.
+///
+/// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw
+/// for each mesh; MOC_ThreadpoolFlush; tests.
+///
+/// Draw calls return at once. The threads draw into `bins_w` times `bins_h` bins of the screen (at most four per
+/// thread, none smaller than 128x64 pixels; the screen is divided into rows first), within each bin in the order of the
+/// calls, so the buffer has the same bits as if one thread drew it. While a worker thread is awake, submitted work is
+/// drawn without a further call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads,
+/// MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+///
+/// At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller helps until this
+/// is so again. A program that rotates among `max_jobs` + 1 arrays therefore needs no flush before it overwrites one.
+///
+/// Several threads may submit and query at once, and call every other function of the pool except
 /// MOC_ThreadpoolDestroy.
 ///
-/// Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
-/// each mesh; MOC_ThreadpoolFlush; tests.
-///
-/// Draw calls return at once. The threads draw in `bins_w` times `bins_h` bins of the screen (at most four per thread, none
-/// smaller than 128x64 pixels, and the screen is divided into rows first), in each bin in the order of the calls: the buffer
-/// gets the same bits as from one thread. While a worker thread is awake, submitted work is drawn without a further call. With
-/// none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or
-/// MOC_ThreadpoolWorkOnce.
-///
-/// At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller does work until this holds
-/// again. So a program that rotates among `max_jobs` + 1 arrays needs no flush before it overwrites one.
-///
-/// Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
-///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` above 1024,
-/// MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE if `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` is
+/// above 1024, MOC_STATUS_OUT_OF_MEMORY if the system cannot start the threads.
 ///
 /// # Safety
 /// `out` is null or can be written.
@@ -194,12 +195,12 @@ unsafe fn create(
     Ok(())
 }
 
-/// Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
+/// Draws everything submitted, ends the threads, and frees the pool; the object that it drew into remains. Null is
 /// allowed.
 ///
 /// # Safety
-/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
-/// last MOC_ThreadpoolFlush can still be read.
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. The arrays of the calls
+/// submitted since the last MOC_ThreadpoolFlush can still be read.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolDestroy))]
 pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC_Status {
     guard(|| {
@@ -211,7 +212,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolDestroy(pool: *mut MOC_Threadpool) -> MOC
     })
 }
 
-/// Lets the threads work. A second time changes nothing.
+/// Wakes the threads, so that they draw what is submitted. Has no effect if they are already awake.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -226,8 +227,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolWakeThreads(pool: *const MOC_Threadpool) 
     })
 }
 
-/// Draws what was submitted, then puts the threads to sleep. Calls are still accepted; they wait until the threads are woken,
-/// or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
+/// Draws everything submitted, then puts the threads to sleep. Draw calls are still accepted; they wait until the
+/// threads are woken, or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -242,8 +243,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSuspendThreads(pool: *const MOC_Threadpoo
     })
 }
 
-/// Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
-/// and, as long as no thread calls the pool, the object may be drawn into directly.
+/// Waits until everything submitted before is drawn. Afterwards the arrays of those calls may be changed or freed and,
+/// as long as no thread calls the pool, the object may be drawn into directly.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -332,7 +333,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
     })
 }
 
-/// Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
+/// Makes the pool draw into `moc` from now on (null: into no object), once everything submitted before is drawn. The
+/// object keeps its near plane.
 ///
 /// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
 /// while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
@@ -353,9 +355,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     guard(|| unsafe { handle(pool)?.pool.set_buffer_unowned(NonNull::new(moc)).map_err(Refusal::from) })
 }
 
-/// MOC_SetResolution of the pool's object, after what was submitted is drawn.
+/// MOC_SetResolution on the pool's object, once everything submitted is drawn.
 ///
-/// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+/// Errors: as there, and MOC_STATUS_NO_BUFFER if the pool has no object.
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads. Meanwhile no thread queries the object other than through the pool.
@@ -377,7 +379,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetResolution(
 
 /// MOC_ThreadpoolFlush, then MOC_SetNearClipPlane on the pool's object.
 ///
-/// Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+/// Errors: as there, and MOC_STATUS_NO_BUFFER if the pool has no object.
 ///
 /// # Safety
 /// As MOC_ThreadpoolWakeThreads.

@@ -43,9 +43,10 @@ impl MOC_Threadpool {
     }
 }
 
-/// Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
-/// vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
-/// so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both with the mesh.
+/// Sets the matrix of the calling thread's later calls: 16 floats as in MOC_RenderTriangles, which are copied. Null: no
+/// matrix, the vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those most
+/// recently set by any thread, so one thread may set them and another draw. MOC_ThreadpoolRenderMesh takes both from
+/// the mesh.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool.
 ///
@@ -61,8 +62,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetMatrix(pool: *const MOC_Threadpool, mo
     })
 }
 
-/// Sets the vertex layout of the calling thread's later calls; null: (16, 4, 12), packed x, y, z, w, which does not suit a
-/// matrix: with one the last offset is that of z. Threads that set none are treated as in MOC_ThreadpoolSetMatrix.
+/// Sets the vertex layout of the calling thread's later calls. Null: (16, 4, 12), packed x, y, z, w, which is wrong
+/// with a matrix, because the last offset is then that of z. A thread that has never set one uses the most recent, as
+/// in MOC_ThreadpoolSetMatrix.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
 ///
@@ -88,8 +90,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolSetVertexLayout(
     })
 }
 
-/// MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and
-/// the arrays of all earlier calls may be changed or freed.
+/// MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns, the buffer is
+/// clear, and the arrays of all earlier calls may be changed or freed.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
 ///
@@ -101,8 +103,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) 
     guard(|| unsafe { handle(pool) }?.pool.clear_buffer().because(MOC_Status::MOC_STATUS_NO_BUFFER, EMPTY))
 }
 
-/// MOC_RenderTriangles with the matrix and the vertex layout that the calling thread has set, as MOC_ThreadpoolRenderMesh: it
-/// returns at once.
+/// MOC_RenderTriangles with the calling thread's matrix and vertex layout. It returns at once, like
+/// MOC_ThreadpoolRenderMesh.
 ///
 /// Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
 ///
@@ -127,8 +129,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     })
 }
 
-/// Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
-/// no longer holds. The struct, its matrix and its layout are copied. The near plane is the object's.
+/// Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then the calling
+/// thread helps until that is no longer so. The struct, its matrix and its layout are copied. The near plane is the
+/// object's.
 ///
 /// Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
 ///
@@ -190,7 +193,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestRect(
     unsafe { guard_result(result, query) }
 }
 
-/// MOC_TestTriangles with the matrix and the vertex layout that the calling thread has set, against what has been drawn so far.
+/// MOC_TestTriangles with the calling thread's matrix and vertex layout, against what has been drawn so far.
 ///
 /// Errors: as there.
 ///
@@ -217,7 +220,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolTestTriangles(
     unsafe { guard_result(result, query) }
 }
 
-/// MOC_ComputePixelDepthBuffer of the pool's object, after everything submitted is drawn.
+/// MOC_ComputePixelDepthBuffer for the pool's object, once everything submitted is drawn.
 ///
 /// Errors: as there.
 ///
@@ -242,14 +245,14 @@ pub unsafe extern "C" fn MOC_ThreadpoolComputePixelDepthBuffer(
     })
 }
 
-/// Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
-/// MOC_MergeBuffers: each thread takes pieces of the screen.
+/// Merges the buffers of `count` other objects into the pool's, in order with the calls before and after it. The result
+/// is that of MOC_MergeBuffers; each thread merges parts of the screen.
 ///
-/// Errors: as there; nothing is folded.
+/// Errors: as there; on an error nothing is merged.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
-/// until a flushing call returns.
+/// As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the other objects until a flushing
+/// call returns.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolMergeBuffers))]
 pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     pool: *const MOC_Threadpool,
@@ -259,7 +262,7 @@ pub unsafe extern "C" fn MOC_ThreadpoolMergeBuffers(
     guard(|| {
         // SAFETY: the caller's contract.
         let (pool, others) = unsafe { (handle(pool)?, objects(others, count)?) };
-        // With itself changes nothing, even while it is being drawn into.
+        // Merging an object with itself changes nothing, even while it is being drawn into.
         pool.pool
             .with_object(|moc| {
                 let others: Vec<_> = others.iter().copied().filter(|&other| !core::ptr::eq(other, moc)).collect();

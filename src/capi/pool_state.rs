@@ -1,5 +1,5 @@
-//! The matrix and vertex layout set on a pool: each thread has its own, so that no thread draws or tests with what another has
-//! just set.
+//! The matrix and vertex layout set on a pool. Each thread has its own, so that no thread draws or tests with those
+//! that another has just set.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -15,7 +15,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// A mesh with this matrix and layout, to which it points.
+    /// A mesh with this matrix and layout, to which it holds pointers.
     pub fn mesh(
         &self,
         vertices: *const f32,
@@ -37,7 +37,7 @@ impl State {
     }
 }
 
-/// What was set on a pool.
+/// The state that was set on a pool.
 #[derive(Debug)]
 pub(super) struct PoolState {
     /// Set by any thread, most recently: used by threads that have never set anything. Its address identifies the pool.

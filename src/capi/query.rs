@@ -1,4 +1,4 @@
-//! What reads the buffer: tests, depth, statistics.
+//! Calls that read the buffer: tests, depth, statistics.
 
 use super::mesh::{Describe, MOC_Mesh, MeshArguments};
 use super::messages::note;
@@ -9,21 +9,22 @@ use super::types::{self, MOC_Statistics, MOC_VertexLayout};
 use crate::float_environment::{self, in_default_environment};
 use crate::{CullingResult, MaskedOcclusionCulling};
 
-/// Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
+/// Tests occludees: if these triangles were drawn now, would any part of them be nearer than what was drawn, or at the
 /// same depth?
 ///
-/// The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
-/// those whose centre it covers. `result` (null is allowed) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
-/// triangle that faces the eye touches a pixel, or there is none (MOC_OCCLUDED, too, where all pixels around those that
-/// touch none are behind what was drawn); MOC_VISIBLE also for triangles with a NaN or infinite
-/// coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
+/// The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only those whose
+/// centre it covers. `result` (may be null) receives a MOC_CullingResult. It is MOC_VIEW_CULLED if no front-facing
+/// triangle touches a pixel, or if there are no triangles; MOC_OCCLUDED is also possible for triangles that touch no
+/// pixel, if all the pixels around them are behind what was drawn. It is MOC_VISIBLE also for triangles with a NaN, an
+/// infinite coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
 ///
-/// The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
-/// or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
-/// near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
+/// The answer is for the triangles, not for what they enclose. If the bounding box of an object crosses the near plane
+/// or contains the eye, its faces may be back-facing, or hidden although the object is not: treat such an object as
+/// visible. If the near plane is 0 or MOC_CLIP_PLANE_NEAR is omitted, triangles that reach behind the eye within the
+/// view are MOC_VISIBLE.
 ///
-/// Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes through the
-/// pool.
+/// Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes
+/// through the pool.
 ///
 /// # Safety
 /// As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
@@ -54,8 +55,8 @@ pub unsafe extern "C" fn MOC_TestTriangles(
     unsafe { guard_result(result, || test(moc, mesh)) }
 }
 
-/// As MOC_TestTriangles, with the length of the vertex array in floats: an index that names a vertex outside
-/// of it is an error.
+/// As MOC_TestTriangles, with the length of the vertex array in floats: an index of a vertex that is not entirely
+/// inside the array is an error.
 ///
 /// Errors: as MOC_RenderTrianglesChecked.
 ///
@@ -88,7 +89,7 @@ pub unsafe extern "C" fn MOC_TestTrianglesChecked(
     unsafe { guard_result(result, || test(moc, mesh)) }
 }
 
-/// MOC_TestTriangles or MOC_TestTrianglesChecked of a mesh that a struct describes.
+/// MOC_TestTriangles or MOC_TestTrianglesChecked for a mesh described by a struct.
 ///
 /// Errors: as MOC_RenderMesh, except MOC_STATUS_BUSY.
 ///
@@ -115,16 +116,16 @@ unsafe fn test(moc: *const MaskedOcclusionCulling, mesh: impl Describe) -> Resul
     Ok(moc.test_mesh(&mesh.mesh()))
 }
 
-/// Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
-/// a box.
+/// Tests a rectangle on the screen, such as the bounds of an object's box. docs/conventions.md has code that computes
+/// one from a box.
 ///
-/// - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever the
-///   MOC_YAxis). They may lie off screen, infinities included. Every pixel that is touched counts.
-/// - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
-/// - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
-///   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
-///   a minimum is above its maximum, and on errors. NaN and such a minimum are reported to the callback of
-///   MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
+/// - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever
+///   the MOC_YAxis). They may be off screen or infinite. Every pixel that is touched counts.
+/// - `wmin`: the clip-space w of the nearest point. Pass 0 if the object crosses the near plane.
+/// - `result`: not null. MOC_VIEW_CULLED if the rectangle is off screen; MOC_OCCLUDED if all of it is behind what was
+///   drawn; otherwise, and at the same depth, MOC_VISIBLE. Also MOC_VISIBLE if a number is NaN, if `wmin` is not
+///   positive, if a minimum is above its maximum, and on errors. A NaN and a minimum above its maximum are reported to
+///   the callback of MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
 ///
 /// Several threads may test at once.
 ///
@@ -179,7 +180,7 @@ unsafe fn test_rect_elsewhere(
     in_default_environment(|| unsafe { MOC_TestRect(moc, xmin, ymin, xmax, ymax, wmin, result) })
 }
 
-/// What is probably wrong with a rectangle, if anything: xmin, ymin, xmax, ymax and wmin.
+/// A probable mistake in a rectangle (xmin, ymin, xmax, ymax, wmin), if there is one.
 pub(super) fn odd_rectangle([xmin, ymin, xmax, ymax, wmin]: [f32; 5]) -> Option<&'static str> {
     if [xmin, ymin, xmax, ymax, wmin].iter().any(|number| number.is_nan()) {
         Some("a number is NaN: the answer is MOC_VISIBLE")
@@ -192,13 +193,12 @@ pub(super) fn odd_rectangle([xmin, ymin, xmax, ymax, wmin]: [f32; 5]) -> Option<
     }
 }
 
-/// Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
-/// direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
-/// depths are those that tests compare with, never nearer than what was drawn.
+/// Writes the depth (1/w) of every pixel to `out`: width times height floats, row by row in the object's y direction,
+/// negative where nothing was drawn. `flip_y` is 1 to write the last row first, 0 to write the first row first. These
+/// are the depths that tests compare with, never nearer than what was drawn.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object,
-/// MOC_STATUS_INVALID_ENUM for another `flip_y`,
-/// MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
+/// MOC_STATUS_INVALID_ENUM for any other `flip_y`, MOC_STATUS_INVALID_LAYOUT if `out` is not aligned to 4 bytes.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
@@ -215,7 +215,7 @@ pub unsafe extern "C" fn MOC_ComputePixelDepthBuffer(
 
 /// As MOC_ComputePixelDepthBuffer, with the length of `out` in floats.
 ///
-/// Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE where `out` is too short.
+/// Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE if `out` is too short.
 ///
 /// # Safety
 /// As MOC_ComputePixelDepthBuffer, where `out` can be written for `out_floats` floats.
@@ -254,8 +254,8 @@ unsafe fn depth(
     Ok(moc.compute_pixel_depth_buffer(out, flip_y)?)
 }
 
-/// Writes what was counted since the object was made; nothing sets the counts back. `out->size` is sizeof(MOC_Statistics), set by
-/// the caller.
+/// Writes the counts since the object was created; they are never reset. The caller sets `out->size` to
+/// sizeof(MOC_Statistics) before the call.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///

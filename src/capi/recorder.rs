@@ -10,10 +10,10 @@ use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
 use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
-/// No answer is known, in recordings.
+/// In recordings: the answer is not known.
 pub const MOC_RESULT_UNKNOWN: i32 = -1;
 
-/// What a recorded call is.
+/// The kind of a recorded call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_RecordedCallKind {
@@ -30,17 +30,17 @@ pub enum MOC_RecordedCallKind {
 const NO_RECORDING: Refusal = Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the recording is null");
 const NO_CALL: Refusal = Refusal::new(MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE, "index is not below num_calls");
 
-/// A recording that was read; see MOC_RecordingLoad.
+/// A recording in memory; see MOC_RecordingLoad.
 #[derive(Debug)]
 pub struct MOC_Recording {
     recording: Recording,
-    /// The layouts and the meshes of the calls in their order, where a call has one. The meshes point into the recording and to
-    /// the layouts, neither of which changes.
+    /// The layout and mesh of each call that has one, in the order of the calls. The meshes point into the recording
+    /// and to the layouts, neither of which changes.
     _layouts: Vec<Option<MOC_VertexLayout>>,
     meshes: Vec<Option<MOC_Mesh>>,
 }
 
-/// What a recording begins with.
+/// The header of a recording.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_RecordingInfo {
@@ -48,11 +48,11 @@ pub struct MOC_RecordingInfo {
     pub size: u32,
     /// The near plane, in clip-space w.
     pub near_clip_plane: f32,
-    /// In pixels.
+    /// Width of the buffer in pixels.
     pub width: u32,
-    /// In pixels.
+    /// Height of the buffer in pixels.
     pub height: u32,
-    /// How many calls were recorded.
+    /// Number of recorded calls.
     pub num_calls: u32,
 }
 
@@ -64,20 +64,21 @@ pub struct MOC_RecordedCall {
     pub size: u32,
     /// A MOC_RecordedCallKind.
     pub kind: i32,
-    /// The MOC_CullingResult that was answered, or MOC_RESULT_UNKNOWN.
+    /// The MOC_CullingResult that the call returned, or MOC_RESULT_UNKNOWN.
     pub result: i32,
-    /// Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Zeros otherwise.
+    /// For rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Otherwise zeros.
     pub rect: [f32; 5],
-    /// Of draws and tests of triangles: their mesh, which MOC_RenderMesh and MOC_TestMesh take. Null otherwise. It stays right
-    /// until the recording is destroyed.
+    /// For draws and tests of triangles: the mesh, for MOC_RenderMesh and MOC_TestMesh. Otherwise null. Valid until the
+    /// recording is destroyed.
     pub mesh: *const MOC_Mesh,
-    /// How many floats there are from `mesh->vertices` on.
+    /// Number of floats from `mesh->vertices` on.
     pub vertex_floats: usize,
 }
 
-/// Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
-/// format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged. Setting another near
-/// plane or resolution ends the recording, once it holds a call; merges and lists are not recorded.
+/// Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md
+/// for the format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged.
+/// Changing the near plane or the resolution ends a recording that already contains a call. Merges and triangle lists
+/// are not recorded.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
 /// file cannot be created, or on Windows if `path` is not UTF-8.
@@ -94,9 +95,9 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
     guard(|| start().because(MOC_Status::MOC_STATUS_BUSY, "a recording is under way already"))
 }
 
-/// Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
+/// Ends the recording; does nothing if there is none. Destroying an object also ends its recording.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if anything could not be written, now or earlier.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile.
@@ -106,13 +107,13 @@ pub unsafe extern "C" fn MOC_RecorderStop(moc: *const MaskedOcclusionCulling) ->
     guard(|| unsafe { object(moc)?.recorder_stop().map_err(Refusal::from) })
 }
 
-/// Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. `result`: a MOC_CullingResult,
-/// or MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+/// Records a draw that does not go through MOC_RenderTriangles, such as that of a binned mesh. `result`: a
+/// MOC_CullingResult, or MOC_RESULT_UNKNOWN. Does nothing if the object is not recording.
 ///
-/// Errors: those of MOC_RenderTriangles; nothing is recorded.
+/// Errors: as MOC_RenderTriangles; on an error nothing is recorded.
 ///
 /// # Safety
-/// That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
+/// As MOC_RenderTriangles; other threads may use `moc` as they may during a query.
 #[unsafe(export_name = symbol!(MOC_RecordRenderTriangles))]
 pub unsafe extern "C" fn MOC_RecordRenderTriangles(
     moc: *const MaskedOcclusionCulling,
@@ -139,12 +140,12 @@ pub unsafe extern "C" fn MOC_RecordRenderTriangles(
     guard(|| unsafe { record(moc, mesh, result) })
 }
 
-/// MOC_RecordRenderTriangles of a mesh that a struct describes.
+/// MOC_RecordRenderTriangles for a mesh described by a struct.
 ///
-/// Errors: those of MOC_RenderMesh; nothing is recorded.
+/// Errors: as MOC_RenderMesh; on an error nothing is recorded.
 ///
 /// # Safety
-/// That of MOC_RenderMesh; other threads may use `moc` as they may during a query.
+/// As MOC_RenderMesh; other threads may use `moc` as they may during a query.
 #[unsafe(export_name = symbol!(MOC_RecordMesh))]
 pub unsafe extern "C" fn MOC_RecordMesh(
     moc: *const MaskedOcclusionCulling,
@@ -170,8 +171,8 @@ unsafe fn record(moc: *const MaskedOcclusionCulling, mesh: impl Describe, result
     Ok(())
 }
 
-/// Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
-/// The caller gives the recording back to MOC_RecordingDestroy. Several threads may read from one recording at once.
+/// Reads a recording and writes it to `out` (null on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows. The
+/// caller destroys the recording with MOC_RecordingDestroy. Several threads may read from one recording at once.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if the file cannot be read, or on Windows if `path` is not UTF-8,
 /// MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, truncated or corrupt.
@@ -184,7 +185,7 @@ pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut M
     guard(|| unsafe { load(out, || Recording::load(self::path(path)?).map_err(Refusal::from)) })
 }
 
-/// The same of a file that was read into memory, which is not needed afterwards.
+/// As MOC_RecordingLoad, for a file that is already in memory; `bytes` may be freed afterwards.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
 ///
@@ -220,7 +221,8 @@ pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> 
     })
 }
 
-/// Writes to `out` what the recording begins with. `out->size` is sizeof(MOC_RecordingInfo), set by the caller.
+/// Writes the header of the recording to `out`. The caller sets `out->size` to sizeof(MOC_RecordingInfo) before the
+/// call.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
@@ -252,11 +254,12 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
     })
 }
 
-/// Writes the call number `index` to `out`, counted from 0. `out->size` is sizeof(MOC_RecordedCall), set by the caller. What its
-/// pointers name belongs to the recording and lives as long.
+/// Writes the recorded call number `index`, counted from 0, to `out`. The caller sets `out->size` to
+/// sizeof(MOC_RecordedCall) before the call. The memory that its pointers refer to belongs to the recording and is
+/// freed with it.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too small; nothing
-/// is written.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too
+/// small; nothing is written.
 ///
 /// # Safety
 /// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
@@ -314,7 +317,7 @@ unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recor
     Ok(())
 }
 
-/// The recorded mesh of a call that has one.
+/// The mesh of a recorded call that has one.
 fn recorded_mesh(call: &RecordedCall) -> Option<&RecordedMesh> {
     match call {
         RecordedCall::RenderTriangles(mesh) | RecordedCall::TestTriangles(mesh) => Some(mesh),
@@ -322,7 +325,7 @@ fn recorded_mesh(call: &RecordedCall) -> Option<&RecordedMesh> {
     }
 }
 
-/// A mesh of a recording in C's form, which points into the recording and to its layout.
+/// A recorded mesh as a C struct that points into the recording and to its layout.
 fn described(mesh: &RecordedMesh, layout: &MOC_VertexLayout) -> MOC_Mesh {
     let count = mesh.vertices().map_or(0, |vertices| vertices.len());
     MOC_Mesh {

@@ -4,7 +4,7 @@ use super::status::MOC_Status;
 use crate::attachment::Taken;
 use crate::{Error, RecordingError};
 
-/// A status and, where the boundary knows more, which argument it was.
+/// A status and, if known here, which argument was wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub status: MOC_Status,
@@ -61,7 +61,7 @@ impl From<Error> for Refusal {
             Error::SizeMismatch => MOC_Status::MOC_STATUS_SIZE_MISMATCH,
             Error::ListFull => MOC_Status::MOC_STATUS_LIST_FULL,
             Error::OutOfMemory => MOC_Status::MOC_STATUS_OUT_OF_MEMORY,
-            // A pool of the C interface may also have an object without a buffer.
+            // Pools of the C interface may also have an object without a buffer.
             Error::NoObject => MOC_Status::MOC_STATUS_NO_BUFFER,
         };
         status.into()
@@ -86,7 +86,7 @@ impl From<Taken> for Refusal {
     }
 }
 
-/// Adds to results of the Rust API which argument was wrong, where the boundary knows it.
+/// Adds to an error of the Rust API which argument was wrong, if that is known here.
 pub(super) trait Because<T> {
     /// If the status is `status`, explains it with `why`.
     fn because(self, status: MOC_Status, why: &'static str) -> Result<T, Refusal>;

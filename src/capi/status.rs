@@ -1,4 +1,4 @@
-//! What every function returns, and the version of the interface.
+//! The status that every function returns, and the version of the interface.
 
 use core::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,9 +11,9 @@ use crate::float_environment::in_default_environment;
 
 /// The version of this interface: 1000 * major + minor of the library's version.
 ///
-/// Compare it with MOC_GetAbiVersion() to see that header and library belong together: before version
-/// 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
-/// header's.
+/// Compare it with MOC_GetAbiVersion() to check that header and library belong together: before version 1.0 they must
+/// be equal; from then on the major versions must be equal, and the library's minor version must be at least that of
+/// the header.
 pub const MOC_ABI_VERSION: u32 = 2;
 
 const _: () = {
@@ -27,47 +27,46 @@ const _: () = {
     assert!(MOC_ABI_VERSION == expected, "MOC_ABI_VERSION does not follow the crate's version");
 };
 
-/// What a call reports. Where it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the
-/// function says otherwise.
+/// The result of a call. If it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the function's
+/// documentation says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_Status {
-    /// Done.
+    /// The call succeeded.
     MOC_STATUS_OK = 0,
-    /// A pointer that has to name something is null.
+    /// A required pointer is null.
     MOC_STATUS_NULL_POINTER = 1,
-    /// An integer that stands for an enumeration or a flag has no meaning there.
+    /// An integer is not a value of the enumeration or flag that it is passed for.
     MOC_STATUS_INVALID_ENUM = 2,
-    /// A width, height, bin count, triangle count, array length or rectangle is outside of what is accepted.
+    /// A width, height, bin count, triangle count, array length or rectangle is out of range.
     MOC_STATUS_INVALID_SIZE = 3,
-    /// A number that has to be finite is not.
+    /// A number that must be finite is not.
     MOC_STATUS_INVALID_NUMBER = 4,
-    /// A vertex layout has a negative stride or, where the length of the array is given, a negative
-    /// offset; or a pointer is not a multiple of what it points to (4 bytes for indices and floats
-    /// that are written, 8 for lists).
+    /// A vertex layout has a negative stride or, if the length of the array is given, a negative offset; or a pointer
+    /// is misaligned (indices and floats to be written must be aligned to 4 bytes, lists to 8).
     MOC_STATUS_INVALID_LAYOUT = 5,
     /// The object has no buffer: call MOC_SetResolution first.
     MOC_STATUS_NO_BUFFER = 6,
-    /// An index names a vertex that is not there.
+    /// An index refers to a vertex that does not exist.
     MOC_STATUS_INDEX_OUT_OF_RANGE = 7,
-    /// The two buffers differ in resolution or in the direction of their rows.
+    /// The two buffers differ in resolution or row direction.
     MOC_STATUS_SIZE_MISMATCH = 8,
     /// A triangle list was full. The triangles that fitted are in the lists.
     MOC_STATUS_LIST_FULL = 9,
-    /// The allocator returned nothing.
+    /// An allocation failed.
     MOC_STATUS_OUT_OF_MEMORY = 10,
-    /// The library failed inside. Memory is intact, but the call did not finish.
+    /// An internal error. Memory is intact, but the call did not finish.
     MOC_STATUS_INTERNAL = 11,
-    /// A recording's file cannot be made, written or read.
+    /// The file of a recording cannot be created, written or read.
     MOC_STATUS_FILE = 12,
-    /// A file is no recording, or it is cut or broken.
+    /// A file is not a recording, or it is truncated or corrupt.
     MOC_STATUS_INVALID_RECORDING = 13,
     /// A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
     /// recording.
     MOC_STATUS_BUSY = 14,
 }
 
-/// One text a status, in their order.
+/// One text per status, in the order of the enumeration.
 const TEXTS: [&CStr; 15] = [
     c"done",
     c"a pointer that has to name something is null",
@@ -92,7 +91,7 @@ pub extern "C" fn MOC_GetAbiVersion() -> u32 {
     MOC_ABI_VERSION
 }
 
-/// A status in English, for logs. Never null; the text lives as long as the library is loaded.
+/// An English text for a status, for logs. Never null; valid as long as the library is loaded.
 #[unsafe(export_name = symbol!(MOC_StatusText))]
 pub extern "C" fn MOC_StatusText(status: i32) -> *const c_char {
     let text = usize::try_from(status).ok().and_then(|i| TEXTS.get(i));
@@ -112,7 +111,7 @@ pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
     in_default_environment(|| run(messages::function_of::<F>, body))
 }
 
-/// As [`guard`], for calls that answer: `result` gets the answer, or "visible" where there is none.
+/// As [`guard`], for calls with an answer: `result` receives it, or "visible" on errors.
 ///
 /// # Safety
 /// `result` is null or can be written.
@@ -193,7 +192,7 @@ mod tests {
         }
     }
 
-    // On targets that do not unwind there is nothing to catch: a panic ends the process.
+    // On targets without unwinding there is nothing to catch: a panic ends the process.
     #[cfg(panic = "unwind")]
     #[test]
     fn a_panic_becomes_a_status_and_the_answer_visible() {

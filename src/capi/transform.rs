@@ -7,14 +7,14 @@ use super::types::MOC_VertexLayout;
 use crate::VertexLayout;
 use crate::vertices::VertexSource;
 
-/// Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
-/// writes them to `out` as packed x, y, z, w, 16 bytes a vertex: what draws and tests without a matrix take. With the
-/// matrix they give the same bits, and need no second array. No object is used.
+/// Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and writes them to
+/// `out` as packed x, y, z, w, 16 bytes per vertex: the form that draws and tests without a matrix take. Draws and
+/// tests with the matrix give the same bits without a second array. No object is needed.
 ///
-/// `vertices` points to the x of the first; `layout` says where the others are (null: x, y, z packed, 12
-/// bytes a vertex), its last offset names z. All pointers may lie at any address.
+/// `vertices` points to the x of the first vertex; `layout` says where the other coordinates are (null: packed x, y, z,
+/// 12 bytes per vertex); its last offset is that of z. No alignment is required.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
+/// Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null if there are no vertices),
 /// MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory can hold.
 ///
 /// # Safety
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn MOC_TransformVertices(
         }
         check_length::<[f32; 4]>(n_vertices as usize)?;
         let source = VertexSource { base: vertices.cast(), layout };
-        // SAFETY: the caller's contract: so many vertices can be read and written.
+        // SAFETY: the caller's contract: this many vertices can be read and written.
         unsafe { crate::transform::transform_raw(&matrix, source, out, n_vertices as usize) };
         Ok(())
     })

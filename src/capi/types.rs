@@ -1,4 +1,4 @@
-//! The enumerations and structs of the C interface, and how they become those of the Rust API.
+//! The enumerations and structs of the C interface, and their conversions to the types of the Rust API.
 
 use core::ffi::c_void;
 
@@ -9,11 +9,11 @@ use crate::{
     VertexLayout, YAxis,
 };
 
-/// An instruction set. All of them give the same bits.
+/// An instruction set that the library is compiled for. All of them give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_Implementation {
-    /// No vector instructions by name: runs anywhere.
+    /// Plain code without explicit vector instructions: runs anywhere.
     MOC_SCALAR = -1,
     /// SSE2, the baseline of x86-64 and i686.
     MOC_SSE2 = 0,
@@ -29,18 +29,18 @@ pub enum MOC_Implementation {
     MOC_SIMD128 = 17,
 }
 
-/// How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+/// How a triangle is recorded in a sub-tile. Every rule is conservative; they differ in how much information they keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_UpdateRule {
-    /// One reference depth and two working layers: accurate in nearly any scene and order. The default.
+    /// One reference depth and two working layers: accurate in nearly every scene and order. The default.
     MOC_UPDATE_RULE_THREE_LAYER = 0,
     /// Hasselgren, Andersson, Akenine-Moller: "Masked Software Occlusion Culling", 2016.
     MOC_UPDATE_RULE_QUICK = 1,
     /// After Andersson, Hasselgren, Akenine-Moller: "Masked Depth Culling for Graphics Hardware", 2015.
     MOC_UPDATE_RULE_ACCURATE = 2,
-    /// One reference depth and three working layers: the most accurate, and the slowest. It pays where dense
-    /// geometry is drawn in no order.
+    /// One reference depth and three working layers: the most accurate rule, and the slowest. It pays off for dense
+    /// geometry that is drawn unsorted.
     MOC_UPDATE_RULE_FOUR_LAYER = 3,
 }
 
@@ -54,34 +54,35 @@ pub enum MOC_YAxis {
     MOC_Y_AXIS_UP = 1,
 }
 
-/// Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+/// Which triangles are back-facing and skipped, by their winding in normalised device coordinates (y up).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_BackfaceWinding {
-    /// None: both sides count.
+    /// None: both sides are drawn.
     MOC_BACKFACE_NONE = 0,
-    /// Clockwise triangles face away.
+    /// Clockwise triangles are back-facing.
     MOC_BACKFACE_CW = 1,
-    /// Counter-clockwise triangles face away.
+    /// Counter-clockwise triangles are back-facing.
     MOC_BACKFACE_CCW = 2,
 }
 
-/// What a draw or a query found.
+/// The result of a draw or a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_CullingResult {
-    /// It may be seen.
+    /// It may be visible.
     MOC_VISIBLE = 0,
     /// It is certainly hidden by what was drawn.
     MOC_OCCLUDED = 1,
-    /// It lies outside of the view, or faces away.
+    /// It is outside the view, or back-facing.
     MOC_VIEW_CULLED = 3,
 }
 
 /// The frustum planes that a mesh may cross: flags, to be combined with `|`.
 ///
-/// Only MOC_CLIP_PLANE_NEAR changes anything: without it the near plane of the object is not applied
-/// (what lies behind the eye is never drawn). Leaving out side planes is always safe and never faster.
+/// Only MOC_CLIP_PLANE_NEAR has an effect: without it the object's near plane is not applied (geometry behind the eye
+/// is always clipped). Omitting a side plane does not promise that the mesh stays inside it: it is always safe, and
+/// never faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_ClipPlanes {
@@ -103,12 +104,13 @@ pub enum MOC_ClipPlanes {
     MOC_CLIP_PLANE_ALL = 0x1f,
 }
 
-/// Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
-/// for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
-/// that uses the object; must not throw, and must not use the object or the pool that draws into it.
+/// Allocates `size` bytes aligned to `alignment` (a power of two; `size` is a multiple of it, as C11's aligned_alloc
+/// requires). Returns null if there is no memory. Memory that is not aligned to `alignment` is freed and treated as an
+/// allocation failure. Called from any thread that uses the object; must not throw, and must not use the object or the
+/// pool that draws into it.
 pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: usize) -> *mut c_void>;
 
-/// Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
+/// Frees memory allocated by the MOC_AlignedAlloc of the same object. Called from any thread; must not throw.
 pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 
 /// Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may enter the
@@ -116,38 +118,39 @@ pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 pub type MOC_CallAlloc =
     Option<unsafe extern "C" fn(alloc: MOC_AlignedAlloc, alignment: usize, size: usize) -> *mut c_void>;
 
-/// What an object is made with. Set `size`, let MOC_DefaultSettings fill in the rest, then change what matters.
+/// Settings of an object, fixed at creation. Set `size`, let MOC_DefaultSettings fill in the rest, then change what
+/// should differ.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_Settings {
     /// sizeof(MOC_Settings).
     pub size: u32,
-    /// A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. On another
-    /// architecture than the named one, anything but MOC_SCALAR permits the best that there is.
+    /// A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. If it belongs to another
+    /// architecture, anything but MOC_SCALAR allows the best available.
     pub implementation: i32,
     /// A MOC_UpdateRule. Default MOC_UPDATE_RULE_THREE_LAYER.
     pub update_rule: i32,
     /// A MOC_YAxis. Default MOC_Y_AXIS_DOWN.
     pub y_axis: i32,
-    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
-    /// MOC_GetDroppedTriangles counts. Default 0.
+    /// 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which makes draws about a tenth slower. 0: only
+    /// dropped triangles are counted (MOC_GetDroppedTriangles). Default 0.
     pub statistics: i32,
-    /// Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
-    /// system. Null, together with `free`: the system. Default null.
+    /// Allocates the memory of the object and its buffer; recordings and pools use the system's allocator. Null,
+    /// together with `free`: the system's allocator. Default null.
     pub alloc: MOC_AlignedAlloc,
-    /// Takes back what `alloc` gave. Null exactly when `alloc` is.
+    /// Frees the memory that `alloc` returned. Null if and only if `alloc` is.
     pub free: MOC_AlignedFree,
-    /// Calls `alloc` on the library's behalf, when the call must be guarded. Null: the library calls it directly. Ignored if
+    /// Calls `alloc` for the library, for allocators that throw. Null: the library calls `alloc` directly. Ignored if
     /// `alloc` is null. Default null.
     pub call_alloc: MOC_CallAlloc,
 }
 
-/// Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
+/// Where x, y and w (with a matrix: x, y and z) of a vertex are stored, in bytes.
 ///
-/// Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a
-/// matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n); positions among other things are
-/// (sizeof(vertex), 4, 8) with a matrix, and a pointer to the first x. Nothing has to be aligned. Offsets may be negative,
-/// but for the functions whose names end in Checked.
+/// Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a matrix is (12, 4,
+/// 8); a structure of arrays of n vertices is (4, 4 * n, 8 * n); positions inside a larger vertex are (sizeof(vertex),
+/// 4, 8) with a matrix, and a pointer to the first x. No alignment is required. Offsets may be negative, except for the
+/// functions whose names end in Checked.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_VertexLayout {
@@ -155,12 +158,12 @@ pub struct MOC_VertexLayout {
     pub stride: i32,
     /// Bytes from x to y.
     pub offset_y: i32,
-    /// Bytes from x to w; with a matrix, from x to z.
+    /// Bytes from x to w; with a matrix, to z.
     pub offset_zw: i32,
 }
 
-/// A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
-/// maximum may also be the width or height of the buffer, or that rounded up to the next multiple.
+/// A rectangle of pixels: `min` inclusive, `max` exclusive. x is in multiples of 32, y of 8; a `max` may also be the
+/// width or height of the buffer, as is or rounded up to whole tiles. Rows are counted in the object's y direction.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_ScissorRect {
@@ -174,29 +177,30 @@ pub struct MOC_ScissorRect {
     pub max_y: i32,
 }
 
-/// A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it,
-/// MOC_RenderTrilist draws it.
+/// A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it, and MOC_RenderTrilist
+/// draws it.
 #[derive(Debug)]
 #[repr(C)]
 pub struct MOC_TriList {
-    /// How many triangles `data` can hold.
+    /// Number of triangles for which `data` has room.
     pub capacity: u32,
-    /// How many it holds. Set it to 0 to start over.
+    /// Number of triangles in the list. Set it to 0 to start over.
     pub count: u32,
-    /// 9 floats a triangle, of use to MOC_RenderTrilist only: x and y in 1/256 pixel and 1/w, of three corners.
+    /// 9 floats per triangle, in a form meant only for MOC_RenderTrilist: x and y in 1/256 pixel, and 1/w, of the three
+    /// corners.
     pub data: *mut f32,
 }
 
-/// Counts of what draws did since the object was made.
+/// Statistics of all draws since the object was created.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_OccluderStatistics {
     /// Triangles submitted to be drawn or binned, and those of drawn lists.
     pub num_processed_triangles: i64,
-    /// Those that face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
-    /// and again in each list drawn.
+    /// Those that are front-facing and whose bounds contain a pixel centre on the screen: counted when they are binned,
+    /// and again for each list that is drawn.
     pub num_rasterized_triangles: i64,
-    /// 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle.
+    /// 32x8 tiles in the bounds of such triangles when they are drawn; for a list, only tiles inside the rectangle.
     pub num_tiles_traversed: i64,
     /// Tiles in which a triangle changed, or could have changed, a sub-tile.
     pub num_tiles_updated: i64,
@@ -204,32 +208,32 @@ pub struct MOC_OccluderStatistics {
     pub num_tiles_merged: i64,
 }
 
-/// Counts of what queries did since the object was made.
+/// Statistics of all queries since the object was created.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_OccludeeStatistics {
     /// Rectangles tested.
     pub num_processed_rectangles: i64,
-    /// Triangles submitted to be tested.
+    /// Triangles submitted to be tested (including those after the first visible one).
     pub num_processed_triangles: i64,
-    /// Those of them that were compared with the buffer, up to the first visible one.
+    /// Those of them that were compared with the buffer, up to the first that may be visible.
     pub num_rasterized_triangles: i64,
-    /// Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
+    /// Tiles whose sub-tiles were compared with a rectangle, and those in the bounds of such triangles.
     pub num_tiles_traversed: i64,
 }
 
-/// All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. Triangles
-/// that are dropped are counted in either case, for MOC_GetDroppedTriangles.
+/// All counts of an object, if its settings enable statistics; otherwise zeros. The same on every instruction set.
+/// Dropped triangles are always counted, for MOC_GetDroppedTriangles.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MOC_Statistics {
     /// sizeof(MOC_Statistics).
     pub size: u32,
-    /// 0.
+    /// Always 0.
     pub reserved: u32,
-    /// Of draws.
+    /// Counts of draws.
     pub occluders: MOC_OccluderStatistics,
-    /// Of queries.
+    /// Counts of queries.
     pub occludees: MOC_OccludeeStatistics,
 }
 
@@ -273,7 +277,7 @@ impl MOC_Statistics {
     }
 }
 
-// A pointer to a C list is used as a pointer to a Rust list.
+// A pointer to a C list is cast to a pointer to a Rust list.
 const _: () = {
     assert!(size_of::<MOC_TriList>() == size_of::<TriList<'_>>());
     assert!(align_of::<MOC_TriList>() == align_of::<TriList<'_>>());
@@ -282,7 +286,7 @@ const _: () = {
     assert!(core::mem::offset_of!(MOC_TriList, data) == core::mem::offset_of!(TriList<'_>, data));
 };
 
-// Programs copy these by offset.
+// C programs access these fields at fixed offsets.
 const _: () = {
     assert!(size_of::<MOC_Statistics>() == 80);
     assert!(core::mem::offset_of!(MOC_Statistics, occluders) == 8);
@@ -291,7 +295,7 @@ const _: () = {
     assert!(core::mem::offset_of!(MOC_OccludeeStatistics, num_tiles_traversed) == 24);
 };
 
-// The integers of C are those of the Rust enumerations.
+// The C enumerators have the same values as the Rust ones.
 const _: () = {
     assert!(MOC_Implementation::MOC_SCALAR as i32 == Implementation::Scalar as i32);
     assert!(MOC_Implementation::MOC_SSE2 as i32 == Implementation::Sse2 as i32);

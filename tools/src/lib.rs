@@ -1,4 +1,4 @@
-//! What several tools use.
+//! Code shared by several tools.
 
 pub mod merging;
 pub mod rectangle;

@@ -1,12 +1,12 @@
-//! The rectangle on the screen around a box, and whether a z-buffer hides it.
+//! The screen rectangle of a box, and whether a z-buffer hides it.
 
 use glam::{Mat4, Vec3};
 
 use demo::camera::box_corners;
 use demo::raster::ZBuffer;
 
-/// The rectangle around a box in normalised device coordinates (least x and y, greatest x and y) and its least w; none where
-/// it reaches before the near plane.
+/// The rectangle of a box in normalised device coordinates (minimum x and y, maximum x and y) and its minimum w; none
+/// if it crosses the near plane.
 pub fn rectangle(lo: Vec3, hi: Vec3, clip: &Mat4, near: f32) -> Option<[f32; 5]> {
     let mut r = [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY, f32::INFINITY];
     for p in box_corners(lo, hi).map(|p| *clip * p.extend(1.0)) {
@@ -19,8 +19,8 @@ pub fn rectangle(lo: Vec3, hi: Vec3, clip: &Mat4, near: f32) -> Option<[f32; 5]>
     Some(r)
 }
 
-/// Is everything nearer than a rectangle in all pixels of the screen that it touches? Depths are taken times `factor`, and the
-/// rectangle is drawn in by `inset` pixels. `near` is what depths of z/w are scaled by.
+/// Whether all pixels that a rectangle touches on the screen are nearer than it. Depths are multiplied by `factor`, and
+/// the rectangle is shrunk by `inset` pixels. Depths are z/w scaled by `near`.
 pub fn hides(
     buffer: &ZBuffer,
     &[x_min, y_min, x_max, y_max, w]: &[f32; 5],

@@ -1,5 +1,5 @@
-//! Plays a frame that an engine recorded (`RecorderStart`, a .mocrec file): compares the answers with those recorded, takes
-//! the time, and draws the depths.
+//! Plays a frame recorded by an engine (`RecorderStart`, a .mocrec file): compares the results with the recorded ones,
+//! measures the time, and draws the depths.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,26 +9,26 @@ use clap::Parser;
 use demo::options::{Isa, Rule, isa};
 use demo::play;
 
-/// Plays a recorded frame, checks its answers, and takes the time.
+/// Plays a recorded frame, checks its results, and measures the time.
 #[derive(Debug, Parser)]
 #[command(name = "replay")]
 struct Args {
     /// A .mocrec file
     file: PathBuf,
 
-    /// How often it is played for the time
+    /// Number of times it is played for the measurement
     #[arg(long, value_name = "N", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
 
-    /// How the buffer takes in triangles
+    /// Update rule of the buffer
     #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
     rule: Rule,
 
-    /// The highest instruction set that may be used (default: the best that the processor has)
+    /// The highest instruction set that may be used (default: the best of the processor)
     #[arg(long, value_name = "ISA", value_parser = isa)]
     isa: Option<Isa>,
 
-    /// Where the picture of the depths is written
+    /// File for the picture of the depths
     #[arg(long, value_name = "FILE", default_value = "target/replay/depth.png")]
     out: PathBuf,
 }

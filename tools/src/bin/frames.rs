@@ -1,4 +1,4 @@
-//! Draws one of the benches' scenes some times over and does nothing else: for profilers and for counting instructions
+//! Draws one of the benches' scenes several times and does nothing else: for profilers and for counting instructions
 //! (`.ci/instructions`).
 
 use benches::{HEIGHT, ORDERS, WIDTH, views};
@@ -13,10 +13,10 @@ struct Args {
     /// How often it is drawn, each time into a cleared buffer of 1920x1080.
     #[arg(default_value_t = 1)]
     frames: u32,
-    /// The highest instruction set; the best of the machine otherwise.
+    /// The highest instruction set that may be used (default: the best of the processor).
     #[arg(long, value_name = "ISA", value_parser = isa)]
     isa: Option<Isa>,
-    /// How the buffer takes in triangles.
+    /// Update rule of the buffer.
     #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
     rule: Rule,
     /// near or random.
@@ -36,6 +36,6 @@ fn main() -> Result<(), String> {
         moc.clear_buffer();
         view.draw(&mut moc);
     }
-    println!("{} triangles a frame, {:?}", view.triangles(), moc.implementation());
+    println!("{} triangles per frame, {:?}", view.triangles(), moc.implementation());
     Ok(())
 }

@@ -1,15 +1,16 @@
-//! Terrain and foreground in a buffer each, merged, against everything in one buffer.
+//! Draws terrain and foreground into two buffers and merges them, compared with drawing everything into one buffer.
 //!
 //! After Davies and Strugar's article of 2018 on merging the buffers of masked occlusion culling: a piece of terrain
-//! reaches over so wide a range of depth that it cannot be sorted among the objects in front of it, and the quick rule
-//! forgets near surfaces where the two take turns in a sub-tile. So each is drawn into a buffer of its own, on a thread
-//! of its own, and one buffer is folded into the other. The article's table 1 gives the time of the merge as 0.9, 2.5
-//! and 4.4 percent of that of drawing, at the three sizes that are measured here.
+//! spans so wide a range of depth that it cannot be sorted among the objects in front of it, and the quick rule forgets
+//! near surfaces if the two alternate in a sub-tile. So each is drawn into its own buffer, on its own thread, and one
+//! buffer is merged into the other. In the article's table 1 the merge takes 0.9, 2.5 and 4.4 percent of the drawing
+//! time, at the three sizes that are measured here.
 //!
-//! The scene is generated: a bumpy height field in pieces and hundreds of towers near the eye. Boxes are strewn over
-//! it and tested by their rectangles. A plain z-buffer with a depth for each pixel says which of them are hidden: the
-//! table gives the share of those that each way culls, and how many were culled that the z-buffer shows, which must be
-//! none. Drawing includes the clearing of the buffers; times are medians, the two ways measured in turn.
+//! The scene is generated: a bumpy height field in pieces, and hundreds of towers near the eye. Boxes are scattered
+//! over it and tested by their screen rectangles. A plain z-buffer with a depth for each pixel determines which of them
+//! are hidden: the table gives the percentage of those that each way culls, and how many were culled although the
+//! z-buffer shows them, which must be none. Drawing includes clearing the buffers; times are medians, with the two ways
+//! measured alternately.
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -26,11 +27,11 @@ const RULES: [(&str, UpdateRule); 4] = [
     ("four-layer", UpdateRule::FourLayer),
 ];
 
-/// Compares one buffer for all with a buffer for terrain and one for foreground, merged.
+/// Compares one buffer for everything with separate buffers for terrain and foreground that are merged.
 #[derive(Parser)]
 #[command(name = "merge")]
 struct Args {
-    /// How many boxes are strewn and tested
+    /// Number of boxes that are scattered and tested
     #[arg(long, value_name = "N", default_value_t = 8000)]
     boxes: u32,
 
@@ -38,7 +39,7 @@ struct Args {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
 
-    /// How often each way is drawn
+    /// Number of times each way is drawn
     #[arg(long, value_name = "N", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
 }
@@ -82,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     bar.finish_and_clear();
     if falsely > 0 {
-        return Err(format!("{falsely} boxes were culled that are not hidden").into());
+        return Err(format!("{falsely} boxes were culled although they are not hidden").into());
     }
     Ok(())
 }
@@ -92,7 +93,7 @@ const HEADING: &str = concat!(
     "size       rule        hidden     one     two   false one buf.  terrain  foregr.  at once   merge drawing  speedup",
 );
 
-/// Prints a line above the bar, which is not there where nobody looks at it.
+/// Prints a line above the progress bar, which is hidden if there is no terminal.
 fn say(bar: &ProgressBar, line: &str) {
     bar.suspend(|| println!("{line}"));
 }

@@ -1,8 +1,9 @@
-//! How many times faster the pool draws than one thread, and how much of what the machine gives that is: of what as many threads
-//! get done that have nothing to do with each other, each drawing the whole frame into an object of its own. Processors share
-//! caches and memory, and one that is lent by a hypervisor may be half of one.
+//! Speedup of the pool over one thread, and how close it is to the machine's limit: the throughput of the same number
+//! of independent threads, each drawing the whole frame into its own object. Processors share caches and memory, and a
+//! hypervisor's virtual processor may be half of a physical one.
 //!
-//! The benches' scenes, nearest first, all three ways in turn; medians of each round's ratios. Fails where a pixel differs.
+//! The benches' scenes, nearest first, all three ways alternately; medians of each round's ratios. Fails if a pixel
+//! differs.
 
 use std::sync::RwLock;
 use std::thread;
@@ -15,25 +16,26 @@ use masked_occlusion_culling::{
     CullingThreadpool, Implementation, MaskedOcclusionCulling, Settings, ThreadpoolSettings,
 };
 
-/// Measures the pool of threads beside one thread, and beside threads that share nothing.
+/// Compares the thread pool with one thread, and with independent threads.
 #[derive(Parser)]
 #[command(name = "threads")]
 struct Args {
-    /// Threads at work, the caller's included (default: 2, 4, 8, ... up to the number of processors).
+    /// Number of threads, including the caller's (default: 2, 4, 8, ... up to the number of processors).
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u32).range(2..=256))]
     threads: Vec<u32>,
-    /// How often all is measured.
+    /// Number of rounds.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
-    /// How the buffer takes in triangles.
+    /// Update rule of the buffer.
     #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
     rule: Rule,
-    /// The highest instruction set; the best of the machine otherwise.
+    /// The highest instruction set that may be used (default: the best of the processor).
     #[arg(long, value_name = "ISA", value_parser = isa)]
     isa: Option<Isa>,
 }
 
-/// One thread's frames that are measured together take this long: a thread takes tens of microseconds to wake.
+/// Duration of the frames of one thread that are measured together: long, because a thread takes tens of microseconds
+/// to wake.
 const AT_LEAST: Duration = Duration::from_millis(10);
 
 /// Draws a frame.
@@ -48,7 +50,7 @@ fn seconds(frames: u32, mut draw: impl FnMut()) -> f64 {
     begin.elapsed().as_secs_f64()
 }
 
-/// Every object gets the frame drawn by a thread of its own, all at once: from the first begin to the last end.
+/// Draws the frame into every object on its own thread, all at once: the time from the first start to the last end.
 fn copies(view: &View, frames: u32, objects: &mut [MaskedOcclusionCulling]) -> f64 {
     let draw = |moc: &mut MaskedOcclusionCulling| {
         let begin = Instant::now();
@@ -58,7 +60,7 @@ fn copies(view: &View, frames: u32, objects: &mut [MaskedOcclusionCulling]) -> f
     let (first, others) = objects.split_first_mut().expect("there are two at least");
     let gate = RwLock::new(());
     let times: Vec<(Instant, Instant)> = thread::scope(|scope| {
-        // Opened, too, if a thread cannot be started.
+        // The gate is opened even if a thread cannot be started.
         let closed = gate.write();
         let drawn: Vec<_> = others
             .iter_mut()
@@ -89,7 +91,7 @@ fn pixels(moc: &MaskedOcclusionCulling) -> Vec<u32> {
     depth.into_iter().map(f32::to_bits).collect()
 }
 
-/// Speeds of the pool and of the copies together, in those of one thread; pixels that differ.
+/// Speedups of the pool and of the independent threads over one thread; number of pixels that differ.
 fn measure(
     view: &View,
     threads: u32,

@@ -11,22 +11,22 @@ use demo::scene::{Mesh, Object, Scene};
 pub const NEAR: f32 = 0.1;
 /// Half the height of the view at distance 1.
 const HALF_HEIGHT: f32 = 0.5;
-/// Pieces of terrain in each direction, and quads of a piece in each direction.
+/// Number of terrain pieces in each direction, and of quads per piece in each direction.
 const PIECES: u32 = 8;
 const QUADS: u32 = 16;
-/// Terrain reaches from this far behind the eye...
+/// The terrain begins this far behind the eye...
 const BEHIND: f32 = 20.0;
-/// ... and to both sides, in metres, and this is its length and width.
+/// ... extends this far to both sides, in metres, and has this length and width.
 const LENGTH: f32 = 640.0;
 const TOWERS: u32 = 500;
 
-/// Objects are in the order of drawing: nearest first.
+/// Objects are in drawing order: nearest first.
 pub struct Landscape {
     pub terrain: Vec<Object>,
     pub foreground: Vec<Object>,
-    /// For each object of both, in the order of their nearest points: is it terrain, and which?
+    /// For each object of both, in the order of their nearest points: whether it is terrain, and its index.
     pub interleaved: Vec<(bool, usize)>,
-    /// The rectangles of the boxes in normalised device coordinates, and their least w.
+    /// The rectangles of the boxes in normalised device coordinates, and their minimum w.
     pub boxes: Vec<[f32; 5]>,
     pub clip_from_world: Mat4,
 }
@@ -38,7 +38,7 @@ fn ground(x: f32, z: f32) -> f32 {
 }
 
 impl Landscape {
-    /// The landscape as it is seen in a view that is `aspect` times as wide as high.
+    /// The landscape in a view that is `aspect` times as wide as high.
     pub fn generate(aspect: f32, boxes: u32) -> Self {
         let eye = vec3(0.0, ground(0.0, 0.0) + 9.0, 0.0);
         let clip_from_world = perspective_infinite_reverse(2.0 * HALF_HEIGHT.atan(), aspect, NEAR)

@@ -1,4 +1,4 @@
-//! Draws a landscape both ways, in turn, and takes the times.
+//! Draws a landscape both ways, alternately, and measures the times.
 
 use std::time::{Duration, Instant};
 
@@ -12,22 +12,22 @@ use demo::scene::Object;
 
 /// Times are medians, in seconds.
 pub struct Measured {
-    /// All into one buffer.
+    /// Everything into one buffer.
     pub one: f64,
-    /// Each part, as its thread took it.
+    /// Each part, as measured on its thread.
     pub terrain: f64,
     pub foreground: f64,
     /// Both parts, from the start of the threads to the end of the slower one.
     pub both: f64,
     pub merge: f64,
-    /// How many of the hidden boxes are culled by the one buffer, and by the merged one.
+    /// Number of hidden boxes culled by the single buffer, and by the merged one.
     pub culled_one: usize,
     pub culled_two: usize,
-    /// How many boxes are culled, by either, that are not hidden.
+    /// Number of boxes culled by either that are not hidden.
     pub falsely: usize,
 }
 
-/// An object as the library takes it.
+/// An object in the form that the library takes.
 struct Drawn {
     positions: Vec<[f32; 3]>,
     triangles: Vec<u32>,
@@ -63,7 +63,7 @@ pub fn measure(
     let matrix = Matrix::from(landscape.clip_from_world);
 
     let mut times = [const { Vec::new() }; 5];
-    // The first turn touches memory that the system has not given yet: it is not counted.
+    // The first round touches memory that the system has not mapped yet: it is not counted.
     for turn in 0..=repeats {
         let all = draw(&mut one, interleaved.iter().copied(), matrix)?;
 
@@ -99,7 +99,7 @@ pub fn measure(
     Ok(Measured { one, terrain, foreground, both, merge, culled_one: culled[0], culled_two: culled[1], falsely })
 }
 
-/// Clears the buffer and draws objects; how long that took.
+/// Clears the buffer and draws objects; returns the time taken.
 fn draw<'d>(
     moc: &mut MaskedOcclusionCulling,
     objects: impl Iterator<Item = &'d Drawn>,
@@ -114,7 +114,7 @@ fn draw<'d>(
     Ok(start.elapsed())
 }
 
-/// The middle one, or the higher one of the two in the middle; in seconds.
+/// The median, in seconds; the upper one of the two middle values for an even count.
 fn median(mut times: Vec<Duration>) -> f64 {
     times.sort();
     times[times.len() / 2].as_secs_f64()

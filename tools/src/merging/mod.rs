@@ -1,4 +1,4 @@
-//! Terrain and foreground in a buffer each, merged, against everything in one buffer.
+//! Terrain and foreground in separate buffers, merged, compared with everything in one buffer.
 
 pub mod landscape;
 pub mod measure;

@@ -1,15 +1,15 @@
-//! Which boxes are hidden, by a z-buffer that keeps the depth of every pixel.
+//! Which boxes are hidden, by a full-resolution z-buffer.
 
 use super::landscape::{Landscape, NEAR};
 use crate::rectangle::hides;
 use demo::raster::ZBuffer;
 
 pub struct Truth {
-    /// For each box: is it hidden?
+    /// For each box: whether it is hidden.
     pub is_hidden: Vec<bool>,
-    /// For each box: may it be culled, with the benefit of rounding?
+    /// For each box: whether it may be culled, with the benefit of rounding.
     pub may_be_hidden: Vec<bool>,
-    /// How many are hidden.
+    /// Number of hidden boxes.
     pub hidden: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What is asked of a library: enough to draw a frame and to see that it was drawn.
+//! The interface to a library: enough to draw a frame and to check that it was drawn.
 
 use clap::ValueEnum;
 use glam::Mat4;
@@ -9,20 +9,20 @@ use crate::Result;
 use demo::options::Isa;
 
 pub trait Culler {
-    /// Who it is, in the table and the legends.
+    /// Its name in the table and the legends.
     fn name(&self) -> String;
     /// A cleared buffer of this size.
     fn set_size(&mut self, width: u32, height: u32) -> Result<()>;
     fn set_near(&mut self, near: f32);
     fn clear(&mut self);
     fn draw(&mut self, mesh: &Mesh, model_to_clip: &Mat4);
-    /// Comes after all meshes of a frame, before anything is asked.
+    /// Called after all meshes of a frame, before any query.
     fn finish(&mut self) {}
-    /// Is a rectangle (least x and y, greatest x and y, from -1 to 1) at distance `w` certainly hidden?
+    /// Whether a rectangle (minimum x and y, maximum x and y, from -1 to 1) at distance `w` is certainly hidden.
     fn hides(&self, rectangle: [f32; 4], w: f32) -> bool;
 }
 
-/// What is timed: a clear, and every mesh.
+/// The timed part: a clear, and every mesh.
 pub fn frame(culler: &mut dyn Culler, scene: &Scene) {
     culler.clear();
     for mesh in &scene.meshes {
@@ -33,10 +33,10 @@ pub fn frame(culler: &mut dyn Culler, scene: &Scene) {
 
 const COLUMNS: u16 = 40;
 const ROWS: u16 = 25;
-/// The rectangles that [`hidden`] asks for.
+/// The rectangles that [`hidden`] tests.
 pub const PROBES: usize = COLUMNS as usize * ROWS as usize;
 
-/// How many of the rectangles that divide the screen, far behind everything, are hidden: a library that draws less
+/// Number of rectangles of a grid over the screen, far behind everything, that are hidden: a library that draws less
 /// than another, or nothing, is not faster.
 pub fn hidden(culler: &dyn Culler) -> usize {
     let edge = |i: u16, n: u16| 2.0 * f32::from(i) / f32::from(n) - 1.0;
@@ -46,7 +46,7 @@ pub fn hidden(culler: &dyn Culler) -> usize {
         .count()
 }
 
-/// What an instruction set is called; the number comes from a library.
+/// The name of an instruction set, from a library's number.
 pub fn isa_name(number: i32) -> String {
     let known = Isa::value_variants().iter().find(|isa| **isa as i32 == number);
     known.map_or_else(|| format!("instruction set {number}"), |isa| isa.name())

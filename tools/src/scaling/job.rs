@@ -1,4 +1,4 @@
-//! What is measured: the points of each study, in order.
+//! The measurements: the points of each study, in order.
 
 use super::scene::{self, Scene};
 
@@ -7,7 +7,7 @@ const SIZES: [(u32, u32); 6] = [(640, 400), (1280, 720), (1920, 1080), (2560, 14
 const DEPTHS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
 const USUAL: (u32, u32) = (1920, 1080);
 
-/// What the time is plotted against.
+/// The quantity that time is plotted against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Study {
     Triangles,
@@ -31,13 +31,13 @@ impl Study {
 #[derive(Clone, Copy, Debug)]
 pub struct Job {
     pub study: Study,
-    /// Triangles, pixels, or sheets.
+    /// Number of triangles, pixels, or sheets.
     pub amount: u32,
     pub size: (u32, u32),
 }
 
 impl Job {
-    /// Made when its turn comes: a large one takes hundreds of megabytes.
+    /// Generated when it is needed: a large scene takes hundreds of megabytes.
     pub fn scene(&self) -> Scene {
         match self.study {
             Study::Triangles => scene::terrain(self.amount),
@@ -48,7 +48,7 @@ impl Job {
     }
 }
 
-/// All points, without terrains of more than `most` triangles.
+/// All points, except terrains of more than `most` triangles.
 pub fn jobs(most: u32) -> Vec<Job> {
     let terrains = TERRAINS.into_iter().filter(|n| *n <= most);
     let mut jobs: Vec<Job> = terrains.map(|amount| Job { study: Study::Triangles, amount, size: USUAL }).collect();

@@ -1,4 +1,4 @@
-//! Timing: libraries in turn on the same scene, the median of the repeats.
+//! Timing: libraries alternate on the same scene; the result is the median of the repeats.
 
 use std::time::{Duration, Instant};
 
@@ -6,19 +6,19 @@ use super::culler::{Culler, frame, hidden};
 use super::scene::Scene;
 use crate::Result;
 
-/// What came out for a library.
+/// The result for a library.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     pub seconds: f64,
     pub repeats: usize,
-    /// Rectangles behind everything that are hidden; see [`hidden`].
+    /// Number of rectangles behind everything that are hidden; see [`hidden`].
     pub hidden: usize,
 }
 
-/// A median of fewer says little; of more, no more.
+/// A median of fewer means little; more add nothing.
 const REPEATS: (usize, usize) = (5, 1001);
 
-/// Draws the scene with each library in turn, again and again, until `limit` has passed.
+/// Draws the scene with each library alternately, until `limit` has passed.
 pub fn measure(
     cullers: &mut [Box<dyn Culler>],
     scene: &Scene,
@@ -29,7 +29,7 @@ pub fn measure(
     for culler in cullers.iter_mut() {
         culler.set_size(width, height)?;
         culler.set_near(scene.near);
-        // Not counted: the first frame touches memory that the system has not given yet.
+        // Not counted: the first frame touches memory that the system has not mapped yet.
         frame(&mut **culler, scene);
     }
     let mut times = vec![Vec::new(); cullers.len()];
@@ -50,7 +50,7 @@ pub fn measure(
     Ok(samples.collect())
 }
 
-/// The middle one, or the higher one of the two in the middle.
+/// The median; the upper one of the two middle values for an even count.
 fn median(mut times: Vec<Duration>) -> Duration {
     times.sort();
     times[times.len() / 2]

@@ -1,23 +1,23 @@
-//! A mesh of triangles: everything that is drawn here is a sheet, put somewhere.
+//! Meshes: everything drawn here is a sheet, placed in the scene.
 
 use glam::Vec3;
 
-/// Vertices and indices, of which every one names a vertex: drawing relies on it, so nobody else may change them.
+/// Vertices and indices, all of them in range: drawing relies on it, so the fields are private.
 pub struct Mesh {
     vertices: Vec<[f32; 4]>,
     indices: Vec<u32>,
 }
 
 impl Mesh {
-    /// `columns` by `rows` quads of two triangles each. `place` gets two numbers from 0 to 1, across and up, and has
-    /// to keep right on the right as seen from the front. Rows are drawn from the lowest one.
+    /// A sheet of `columns` by `rows` quads of two triangles each. `place` takes two numbers from 0 to 1, across and
+    /// up, and must keep right on the right as seen from the front. Rows are drawn from the lowest up.
     pub fn sheet(columns: u32, rows: u32, place: impl Fn(f32, f32) -> Vec3) -> Self {
         let mut vertices = Vec::with_capacity((columns as usize + 1) * (rows as usize + 1));
         for row in 0..=rows {
             for column in 0..=columns {
                 let p = place(column as f32 / columns as f32, row as f32 / rows as f32);
-                // x, y, nothing, z: with 16 bytes a vertex and the third coordinate at byte 12, as the default layout
-                // of the class has it, libraries that have a fast way to read vertices take it.
+                // x, y, padding, z: 16 bytes per vertex with the third coordinate at byte 12 is the default layout of
+                // the class, so libraries with a fast path for reading vertices use it.
                 vertices.push([p.x, p.y, 0.0, p.z]);
             }
         }
@@ -32,18 +32,18 @@ impl Mesh {
         Self { vertices, indices }
     }
 
-    /// Triangles with three vertices of their own each, counter-clockwise as seen from the front, drawn in their order.
+    /// Triangles that share no vertices, counter-clockwise as seen from the front, drawn in their order.
     pub fn soup(triangles: &[[Vec3; 3]]) -> Self {
         let vertices: Vec<[f32; 4]> = triangles.iter().flatten().map(|p| [p.x, p.y, 0.0, p.z]).collect();
         Self { indices: (0..vertices.len() as u32).collect(), vertices }
     }
 
-    /// x, y, nothing, z of each vertex.
+    /// x, y, padding, z of each vertex.
     pub fn vertices(&self) -> &[[f32; 4]] {
         &self.vertices
     }
 
-    /// Three a triangle, counter-clockwise as seen from the front.
+    /// Three per triangle, counter-clockwise as seen from the front.
     pub fn indices(&self) -> &[u32] {
         &self.indices
     }

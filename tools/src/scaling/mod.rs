@@ -1,4 +1,4 @@
-//! How the time of drawing grows: with triangles, with pixels, and with sheets one behind the other.
+//! How drawing time grows: with triangles, with pixels, and with sheets one behind another.
 
 pub mod culler;
 pub mod job;

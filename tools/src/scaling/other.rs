@@ -26,7 +26,7 @@ struct Functions {
     hides: unsafe extern "C" fn(Object, f32, f32, f32, f32, f32) -> i32,
 }
 
-/// An object of the other library, which stays loaded while there is one.
+/// An object of the other library, which stays loaded as long as there is one.
 pub struct Other {
     functions: Functions,
     object: Object,
@@ -35,9 +35,9 @@ pub struct Other {
 
 impl Other {
     pub fn load(path: &Path, isa: i32) -> Result<Self> {
-        // A bare file name would be looked for where the system has its libraries.
+        // A bare file name would be searched for in the system's library folders.
         let path = absolute(path)?;
-        // SAFETY: the user vouches for the file: it is one that was made of other.cpp.
+        // SAFETY: the user vouches that the file was built from other.cpp.
         let library =
             unsafe { Library::new(&path) }.map_err(|e| format!("cannot load {}: {}", path.display(), reason(&e)))?;
         // SAFETY: the same; each field has the type of the function of that name in other.cpp.
@@ -68,14 +68,14 @@ unsafe fn function<F: Copy>(library: &Library, name: &str) -> Result<F> {
     Ok(*symbol.map_err(|e| format!("was it made of other.cpp? {}", reason(&e)))?)
 }
 
-/// What the system said; the error alone names only the call that failed.
+/// The system's message; the error alone names only the call that failed.
 fn reason(error: &libloading::Error) -> String {
     error.source().map_or_else(|| error.to_string(), |said| said.to_string())
 }
 
 impl Drop for Other {
     fn drop(&mut self) {
-        // SAFETY: it came from `create`, and this is its end; the library is unloaded after it.
+        // SAFETY: it came from `create`, and is not used afterwards; the library is unloaded after it.
         unsafe { (self.functions.destroy)(self.object) };
     }
 }
@@ -116,7 +116,7 @@ impl Culler for Other {
     }
 }
 
-// Elsewhere a shared object is linked with other arguments.
+// On other systems a shared object is linked with other arguments.
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::super::culler::{PROBES, frame, hidden};

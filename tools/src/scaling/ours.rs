@@ -1,5 +1,5 @@
-//! This library, through its C functions: they are what the C++ class calls, so that both libraries trust their
-//! indices. The Rust interface checks each one first.
+//! This library, through its C functions, which the C++ class calls: so both libraries trust their indices. The Rust
+//! interface checks each one first.
 
 use std::ptr::{null, null_mut};
 
@@ -14,7 +14,7 @@ use demo::options::Rule;
 
 const OK: MOC_Status = MOC_Status::MOC_STATUS_OK;
 
-/// An object that MOC_Create made.
+/// An object from MOC_Create.
 pub struct Ours {
     moc: *mut MaskedOcclusionCulling,
     rule: Rule,
@@ -43,7 +43,7 @@ impl Ours {
 
 impl Drop for Ours {
     fn drop(&mut self) {
-        // SAFETY: it came from MOC_Create, and this is its end.
+        // SAFETY: it came from MOC_Create, and is not used afterwards.
         unsafe { MOC_Destroy(self.moc) };
     }
 }

@@ -1,5 +1,5 @@
-//! The plots: both axes logarithmic, so that twice as much is the same step everywhere and a cost that grows in
-//! proportion is a straight line that climbs as fast as it goes right.
+//! The plots. Both axes are logarithmic, so that a factor of two is the same distance everywhere, and a cost that grows
+//! proportionally is a straight line with slope 1.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::job::Study;
 use super::table::Row;
 use crate::Result;
 
-/// Blue, orange and grey are told apart by everyone.
+/// Everybody can distinguish blue, orange and grey.
 const COLOURS: [RGBColor; 3] = [RGBColor(0, 90, 181), RGBColor(220, 90, 0), RGBColor(120, 120, 120)];
 
 /// A plot of one or two studies.
@@ -18,9 +18,9 @@ struct Plot {
     title: &'static str,
     across: &'static str,
     studies: &'static [Study],
-    /// The unit of the axis across, in amounts.
+    /// The unit of the horizontal axis, in amounts.
     unit: f64,
-    /// Powers of it are marked on both axes: of two where the range is short.
+    /// Base of the powers marked on both axes: two if the range is short.
     base: f64,
 }
 
@@ -63,7 +63,7 @@ struct Curve {
 pub fn write(folder: &Path, libraries: &[String], rows: &[Row]) -> Result<()> {
     for plot in &PLOTS {
         let curves = curves(plot, libraries, rows);
-        // A small --most leaves too few terrains for a curve.
+        // With a small --most there are too few terrains for a curve.
         if curves.iter().all(|c| c.points.len() > 1) {
             draw(&folder.join(plot.file), plot, &curves)?;
         }
@@ -92,7 +92,7 @@ fn curves(plot: &Plot, libraries: &[String], rows: &[Row]) -> Vec<Curve> {
 fn draw(path: &Path, plot: &Plot, curves: &[Curve]) -> Result<()> {
     let root = SVGBackend::new(path, (800, 520)).into_drawing_area();
     root.fill(&WHITE)?;
-    // A little room around the least and the greatest.
+    // A little margin around the minimum and the maximum.
     let range = |pick: fn(&(f64, f64)) -> f64| {
         let values = || curves.iter().flat_map(|c| &c.points).map(pick);
         values().fold(f64::MAX, f64::min) / 1.2..values().fold(0.0, f64::max) * 1.2
@@ -138,7 +138,7 @@ fn draw(path: &Path, plot: &Plot, curves: &[Curve]) -> Result<()> {
     Ok(root.present()?)
 }
 
-/// A number at an axis.
+/// An axis label.
 fn short(value: f64) -> String {
     let (value, unit) = match value {
         1e6.. => (value / 1e6, "M"),

@@ -1,4 +1,4 @@
-//! The three generated scenes. All are seen from the origin along -z, or from above it, 16 to 9 wide.
+//! The three generated scenes. All are seen from the origin along -z, or from above it, with an aspect ratio of 16:9.
 
 use std::f32::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ const ASPECT: f32 = 16.0 / 9.0;
 /// Half the height of the view at distance 1.
 const HALF_HEIGHT: f32 = 0.5;
 
-/// Meshes in the order of drawing, a call each.
+/// Meshes in drawing order, one call each.
 pub struct Scene {
     pub meshes: Vec<Mesh>,
     pub clip_from_world: Mat4,
@@ -32,8 +32,8 @@ impl Scene {
     }
 }
 
-/// Hills up to the horizon, seen from above, in one mesh of exactly this many triangles (an even number), the nearest
-/// first. The sheet widens with the view, so that hardly a triangle is off screen however many there are.
+/// Hills up to the horizon, seen from above, in one mesh of exactly this many triangles (an even number), nearest
+/// first. The sheet widens with the view, so that few triangles are off screen however many there are.
 pub fn terrain(triangles: u32) -> Scene {
     let (columns, rows) = grid(triangles / 2);
     let mesh = Mesh::sheet(columns, rows, |across, up| {
@@ -45,13 +45,13 @@ pub fn terrain(triangles: u32) -> Scene {
     Scene::new(vec![mesh], vec3(0.0, 60.0, 0.0), vec3(0.0, -0.6, -0.8))
 }
 
-/// Columns and rows of a sheet of this many quads, as nearly a square as can be.
+/// Columns and rows of a sheet of this many quads, as close to square as possible.
 fn grid(quads: u32) -> (u32, u32) {
     let rows = (1..=quads.isqrt()).rev().find(|rows| quads.is_multiple_of(*rows)).unwrap_or(1);
     (quads / rows, rows)
 }
 
-/// 500 lumps of 200 triangles each, anywhere in view, the nearest first.
+/// 500 lumps of 200 triangles each, anywhere in view, nearest first.
 pub fn lumps() -> Scene {
     let mut rng = Rng::with_seed(5);
     let mut distances: Vec<f32> = (0..500).map(|_| 20.0 + 180.0 * rng.f32()).collect();
@@ -63,9 +63,9 @@ pub fn lumps() -> Scene {
         let (radius, phase) = (3.5 + within(2.0), within(PI));
         Mesh::sheet(10, 10, |around, up| {
             let (sin, cos) = (TAU * around).sin_cos();
-            // Open by a hair at the poles: no triangle has two corners in one place.
+            // With a tiny opening at the poles: no triangle has two corners at one point.
             let (height, reach) = ((up - 0.5) * 0.98 * PI).sin_cos();
-            // The first and the last column meet, for the bumps go around three times.
+            // The first and the last column meet, because there are three whole periods of bumps around.
             let bump = 1.0 + 0.15 * (3.0 * TAU * around + phase).sin() * reach;
             centre + vec3(sin * reach, height, cos * reach) * radius * bump
         })
@@ -73,14 +73,14 @@ pub fn lumps() -> Scene {
     Scene::new(distances.into_iter().map(lump).collect(), Vec3::ZERO, Vec3::NEG_Z)
 }
 
-/// Bumpy sheets of 2,000 triangles, each of which fills the screen, one behind the other; drawn from the nearest, or
-/// from the farthest.
+/// Bumpy sheets of 2,000 triangles, each of which fills the screen, one behind another; drawn nearest first or farthest
+/// first.
 pub fn sheets(count: u32, nearest_first: bool) -> Scene {
     let sheet = |i: u32| {
         let distance = 20.0 + 4.0 * i as f32;
         let phase = i as f32;
         Mesh::sheet(40, 25, |across, up| {
-            // Half as large again as the view in the distance of the nearest bump, so that no edge shows.
+            // Half as large again as the view at the distance of the nearest bump, so that no edge is visible.
             let half = 1.2 * HALF_HEIGHT * distance;
             let bump = 1.5 * (11.0 * across + phase).sin() * (9.0 * up + 2.0 * phase).cos();
             vec3((2.0 * across - 1.0) * half * ASPECT, (2.0 * up - 1.0) * half, bump - distance)
@@ -93,8 +93,8 @@ pub fn sheets(count: u32, nearest_first: bool) -> Scene {
     Scene::new(meshes, Vec3::ZERO, Vec3::NEG_Z)
 }
 
-/// Right-angled isosceles triangles with legs of this many pixels of a screen `height` high, anywhere on it and turned anyhow,
-/// from the farthest to the nearest: none is hidden when it is drawn. After section 4.3 of the HPG 2016 paper.
+/// Right-angled isosceles triangles with legs of this many pixels on a screen `height` high, at random positions and
+/// rotations, farthest first, so that none is hidden when it is drawn. After section 4.3 of the HPG 2016 paper.
 pub fn right_triangles(leg: f32, count: u32, height: u32) -> Scene {
     let mut rng = Rng::with_seed(7);
     let triangle = |i: u32| {
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(right_triangles(10.0, 500, 1080).triangles(), 500);
     }
 
-    /// That what is measured is drawn: how much of the screen each scene hides.
+    /// Checks that the measured scenes are really drawn: how much of the screen each one hides.
     #[test]
     fn scenes_face_the_camera_and_fill_the_screen() {
         let mut ours = Ours::new(Rule::ThreeLayer, 3).unwrap();

@@ -1,4 +1,4 @@
-//! What was measured, as lines of a table and as a file.
+//! The results, as rows of a table and as a file.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ use super::job::Job;
 use super::measure::Sample;
 use crate::Result;
 
-/// A point and what each library took for it.
+/// A point and the time that each library took for it.
 pub struct Row {
     pub job: Job,
     pub triangles: usize,
@@ -42,7 +42,7 @@ pub fn line(row: &Row) -> String {
     line
 }
 
-/// The file: a row for each point and library. No name has a comma or a quote in it.
+/// The file: a row for each point and library. No name contains a comma or a quote.
 pub fn write_csv(mut out: impl Write, libraries: &[String], rows: &[Row]) -> Result<()> {
     writeln!(
         out,
@@ -78,7 +78,7 @@ mod tests {
         assert!(lines.iter().all(|line| line.split(',').count() == 10));
         assert_eq!(lines[1], "triangles,1000,1920,1080,2000,ours (quick; avx2),1.000000,500.0000,5,7");
         assert!(lines[48].starts_with("depth back to front,64,"), "{}", lines[48]);
-        // The columns of the table stand under their headings.
+        // The columns of the table are aligned with their headings.
         let heading = heading(&libraries);
         assert!(heading.lines().chain([line(&rows[0]).as_str()]).all(|l| l.len() == 34 + 2 * 38));
     }

@@ -8,15 +8,15 @@ use crate::kinds::Kind;
 #[derive(Parser)]
 #[command(name = "conformance")]
 pub struct Args {
-    /// How many triangles for each API
+    /// Number of triangles for each API
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..))]
     pub count: u64,
 
-    /// Whose rules: Vulkan's, where rows run down as in Direct3D, or OpenGL's, where they run up
+    /// Conventions to compare: Vulkan's, where rows run down as in Direct3D, or OpenGL's, where they run up
     #[arg(long, value_enum, default_value_t = Api::Both)]
     pub api: Api,
 
-    /// A screen's width and height in pixels; may be given several times (default: small ones mostly, and some of each
+    /// A screen's width and height in pixels; may be given several times (default: mostly small ones, and some of each
     /// extreme)
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Vec<(u32, u32)>,
@@ -41,7 +41,7 @@ pub enum Api {
     Both,
 }
 
-/// Sizes when none is given, and how many of a hundred triangles each gets: fewer, the longer reading it takes.
+/// Default sizes, and how many of every hundred triangles each gets: fewer for those that take longer to read back.
 const SIZES: [((u32, u32), u64); 8] = [
     ((64, 64), 40),
     ((33, 9), 10),
@@ -58,7 +58,7 @@ impl Args {
         if self.kind.is_empty() { Kind::value_variants().to_vec() } else { self.kind.clone() }
     }
 
-    /// The screens, and how many triangles each gets.
+    /// The screens, and the number of triangles for each.
     pub fn sizes(&self) -> Vec<((u32, u32), u64)> {
         let shares = if self.size.is_empty() {
             SIZES.to_vec()

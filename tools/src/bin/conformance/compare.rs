@@ -1,4 +1,4 @@
-//! One screen, triangle by triangle: the driver's coverage against the library's.
+//! Compares one screen, triangle by triangle: the driver's coverage against the library's.
 
 use std::error::Error;
 
@@ -11,21 +11,21 @@ use crate::ties::ties;
 use crate::view::View;
 use tools::oracle::{Triangle, span};
 
-/// What was seen of one kind.
+/// The tally for one kind.
 #[derive(Clone, Default)]
 pub struct Tally {
     pub triangles: u64,
-    /// Triangles of which the library covers a pixel at least.
+    /// Triangles of which the library covers at least one pixel.
     pub covering: u64,
     pub pixels: u64,
     /// Pixels that the library covers.
     pub covered: u64,
-    /// Pixels whose centres lie exactly on an edge, counted for each edge: those that the fill rule decides.
+    /// Pixels whose centres are exactly on an edge, counted once per edge: those that the fill rule decides.
     pub ties: u64,
-    /// Pixels that one side covers and the other does not, and triangles that have any.
+    /// Pixels that only one of the two covers, and triangles that have any.
     pub differences: u64,
     pub differing: u64,
-    /// The first of them, in words.
+    /// A description of the first of them.
     pub example: Option<String>,
 }
 
@@ -45,7 +45,7 @@ pub fn compare(
         let size = left.min(BATCH as u64);
         let batch: Vec<(usize, Triangle)> = (0..size).map(|_| source.make_next()).collect::<Result<_, _>>()?;
         let triangles: Vec<Triangle> = batch.iter().map(|b| b.1).collect();
-        // Corners that are left over stay in one point, and cover nothing.
+        // Unused corners all stay at one point, and cover nothing.
         let mut vertices: Vertices = [[0.0, 0.0, 0.0, 1.0]; 3 * BATCH];
         for (to, v) in vertices.iter_mut().zip(triangles.iter().flatten()) {
             *to = view.driver_vertex(v);
@@ -72,16 +72,16 @@ pub fn compare(
     Ok(())
 }
 
-/// What differs of one triangle.
+/// The difference for one triangle.
 #[derive(Clone, Copy, Default)]
 struct Difference {
     pixels: u64,
-    /// The first pixel, and whether it is the library that covers it.
+    /// The first pixel that differs, and whether it is the library that covers it.
     first: Option<usize>,
     ours: bool,
 }
 
-/// Looks at every pixel of a batch.
+/// Compares every pixel of a batch.
 fn differences(theirs: &[u8], ours: &Ours, view: View) -> Vec<Difference> {
     let mut found = vec![Difference::default(); BATCH];
     let (pixels, _) = theirs.as_chunks::<{ 4 * WORDS }>();

@@ -1,8 +1,9 @@
-//! What a graphics driver is asked: the coverage of a batch of triangles, each by itself.
+//! The interface to a graphics driver: returns the coverage of a batch of triangles, separately for each.
 //!
-//! The target has four unsigned words a pixel, and the fragment shader of triangle i writes bit i of the 128. A logical
-//! exclusive or with what is there, which is a fixed function of both APIs, keeps the triangles apart: nothing is summed or
-//! hashed, so that no two differences can cancel. A pixel that a driver shaded twice for one triangle would lose its bit.
+//! The target has four unsigned words per pixel, and the fragment shader of triangle i writes bit i of the 128. A
+//! logical exclusive-or with the contents, a fixed function of both APIs, keeps the triangles separate: nothing is
+//! summed or hashed, so no two differences can cancel. If a driver shaded a pixel twice for one triangle, its bit would
+//! be lost.
 
 use std::error::Error;
 
@@ -10,33 +11,33 @@ use masked_occlusion_culling::YAxis;
 
 use crate::view::View;
 
-/// Words of coverage a pixel.
+/// Words of coverage per pixel.
 pub const WORDS: usize = 4;
-/// Triangles that are drawn at once.
+/// Triangles that are drawn together.
 pub const BATCH: usize = 32 * WORDS;
-/// Vertices of a batch, each x, y, z, w.
+/// The vertices of a batch, as x, y, z, w.
 pub type Vertices = [[f32; 4]; 3 * BATCH];
 
-/// A device through one API, with a target for one screen at a time.
+/// A device opened through one API, with a target for one screen at a time.
 pub trait Driver {
     /// The device, its driver and their versions.
     fn name(&self) -> &str;
 
-    /// The API, and which way rows are counted in it.
+    /// The API, and the direction in which it counts rows.
     fn api(&self) -> (&'static str, YAxis);
 
-    /// The bits of its subpixel grid.
+    /// The number of subpixel bits.
     fn subpixel_bits(&self) -> u32;
 
     /// The largest side of a viewport.
     fn most_side(&self) -> u32;
 
-    /// Makes the target.
+    /// Creates the target.
     fn set_view(&mut self, view: View) -> Result<(), Box<dyn Error>>;
 
-    /// Begins drawing a batch into a clear target.
+    /// Starts drawing a batch into a cleared target.
     fn draw(&mut self, vertices: &Vertices) -> Result<(), Box<dyn Error>>;
 
-    /// Waits for what was drawn: [`WORDS`] words a pixel in the machine's byte order, row 0 first.
+    /// Waits for the batch: [`WORDS`] words per pixel in native byte order, row 0 first.
     fn read(&mut self) -> Result<&[u8], Box<dyn Error>>;
 }

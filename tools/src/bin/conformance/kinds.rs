@@ -1,4 +1,4 @@
-//! The kinds of triangles that are compared: those of the tests of coverage, and some that aim at ties.
+//! The kinds of triangles that are compared: those of the coverage tests, and some that are built to produce ties.
 
 use std::collections::VecDeque;
 
@@ -29,11 +29,11 @@ pub enum Kind {
     PartlyOff,
     /// Corners anywhere in the viewport, mostly far off the screen
     FarOff,
-    /// An edge through the centres of a row of pixels, whose ends need not be centres
+    /// An edge through the centres of a row of pixels; its ends need not be centres
     ThroughCentres,
-    /// Fans of three around a pixel's centre: all three have it on two edges
+    /// Fans of three around a pixel centre, which is on two edges of each
     SharedEdges,
-    /// Without an area
+    /// Degenerate: zero area
     Degenerate,
 }
 
@@ -42,7 +42,7 @@ impl Kind {
         self.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned())
     }
 
-    /// What the tests of coverage call it, if they have it.
+    /// Its name in the coverage tests, if they have it.
     fn of_the_tests(self) -> Option<triangles::Kind> {
         use triangles::Kind as Of;
         Some(match self {
@@ -64,13 +64,13 @@ impl Kind {
     }
 }
 
-/// Where triangles of one kind come from.
+/// The source of triangles of one kind.
 enum Source {
     OfTheTests(BoxedStrategy<Triangle>),
     Ours,
 }
 
-/// An endless row of triangles on a screen, the kinds in turn; the same for the same seed.
+/// An endless sequence of triangles for a screen, cycling through the kinds; the same for the same seed.
 pub struct Triangles {
     view: View,
     sources: Vec<(Kind, Source, VecDeque<Triangle>)>,
@@ -90,7 +90,7 @@ impl Triangles {
         Self { view, sources, next: 0, runner: TestRunner::new(config), random: fastrand::Rng::with_seed(seed) }
     }
 
-    /// The next triangle and its kind's place among the kinds.
+    /// The next triangle, and the index of its kind.
     pub fn make_next(&mut self) -> Result<(usize, Triangle), String> {
         let index = self.next;
         self.next = (index + 1) % self.sources.len();
@@ -111,13 +111,13 @@ impl Triangles {
 
 type Point = (i64, i64);
 
-/// Half of the triangles of the kinds that hardly ever meet a pixel's centre, moved onto one; the others as they were.
+/// Moves half of the triangles of the kinds that rarely touch a pixel centre onto one; the others are not changed.
 fn aimed(kind: Kind, mut t: Triangle, random: &mut fastrand::Rng) -> Triangle {
     let on_centre = |v: i64| v.div_euclid(UNIT) * UNIT + UNIT / 2;
     match kind {
         Kind::NearHorizontal | Kind::NearVertical | Kind::HorizontalEdge | Kind::VerticalEdge if random.bool() => {
             let mut corners = t;
-            // The middle one of a thin triangle: its row or column of centres goes through the inside.
+            // The middle corner of a thin triangle, so that its row or column of centres passes through the inside.
             let at = match kind {
                 Kind::NearHorizontal => {
                     corners.sort_by_key(|v| v.y);
@@ -130,12 +130,12 @@ fn aimed(kind: Kind, mut t: Triangle, random: &mut fastrand::Rng) -> Triangle {
                 _ => random.usize(0..3),
             };
             let to = corners[at];
-            // The whole of it, so that it stays as thin, and level or upright edges stay so.
+            // The whole triangle is moved, so that it stays as thin, and horizontal or vertical edges stay so.
             let (dx, dy) = (on_centre(to.x) - to.x, on_centre(to.y) - to.y);
             t.map(|v| Vertex { x: v.x + dx, y: v.y + dy, z: v.z })
         }
         Kind::Diagonal if random.bool() => {
-            // The ends alone: the corner between them stays, which gives it a thickness of up to half a pixel.
+            // Only the ends are moved: the corner between them stays, which gives a thickness of up to half a pixel.
             for v in &mut t[..2] {
                 (v.x, v.y) = (on_centre(v.x), on_centre(v.y));
             }
@@ -145,7 +145,7 @@ fn aimed(kind: Kind, mut t: Triangle, random: &mut fastrand::Rng) -> Triangle {
     }
 }
 
-/// Makes the kinds that the tests do not have.
+/// Generates the kinds that the tests do not have.
 struct Maker<'a> {
     view: View,
     random: &'a mut fastrand::Rng,
@@ -164,7 +164,7 @@ impl Maker<'_> {
         }
     }
 
-    /// A triangle with a w of its own at each corner.
+    /// A triangle with a different w at each corner.
     fn triangle(&mut self, corners: [Point; 3]) -> Triangle {
         corners.map(|(x, y)| Vertex { x, y, z: 0.5f64.powi(self.random.i32(0..=6)) })
     }
@@ -184,11 +184,11 @@ impl Maker<'_> {
         (self.random.i64(0..w) * UNIT + UNIT / 2, self.random.i64(0..h) * UNIT + UNIT / 2)
     }
 
-    /// From a pixel's centre in the direction of another one both ways, by any number of 256ths of the way to it, and a
-    /// third corner anywhere.
+    /// An edge through two pixel centres, extended both ways by any number of 256ths of their distance, and a third
+    /// corner anywhere.
     fn through_centres(&mut self) -> Triangle {
         let (x, y) = self.pixel_centre();
-        // Half of them level or upright, where the rule has most to say.
+        // Half of them horizontal or vertical, where the fill rule matters most.
         let step = match self.random.u32(0..4) {
             0 => (1, 0),
             1 => (0, 1),
@@ -203,7 +203,7 @@ impl Maker<'_> {
         self.turned([ends[0], ends[1], third])
     }
 
-    /// Three triangles around a pixel's centre.
+    /// Three triangles around a pixel centre.
     fn fan(&mut self) -> Vec<Triangle> {
         let hub = self.pixel_centre();
         let rim = [0; 3].map(|_| if self.random.bool() { self.pixel_centre() } else { self.on_screen() });
@@ -219,7 +219,7 @@ impl Maker<'_> {
                 let c = self.on_screen();
                 self.turned([c, c, a])
             }
-            // Three on a line: centres are whole pixels apart, so that 256ths of the way are grid points.
+            // Three collinear points: centres are whole pixels apart, so 256ths of the distance are grid points.
             _ => {
                 let part = self.random.i64(0..=UNIT);
                 let between = |a: i64, b: i64| a + (b - a) / UNIT * part;
@@ -228,7 +228,7 @@ impl Maker<'_> {
         }
     }
 
-    /// With any corner first, in either winding.
+    /// Rotates the corners, and picks either winding.
     fn turned(&mut self, mut corners: [Point; 3]) -> Triangle {
         self.random.shuffle(&mut corners);
         self.triangle(corners)

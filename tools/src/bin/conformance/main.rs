@@ -1,14 +1,14 @@
-//! Conformance of coverage: random and adversarial triangles against a graphics driver, pixel by pixel, in the orientation of
-//! Direct3D and Vulkan and in that of OpenGL.
+//! Conformance of coverage: random and adversarial triangles are compared with a graphics driver, pixel by pixel, in
+//! the orientation of Direct3D and Vulkan and in that of OpenGL.
 //!
 //! `cargo tool conformance -- --count 1000000`
 //!
-//! The driver is any for Vulkan and for OpenGL by way of EGL; Mesa's lavapipe and llvmpipe draw on the processor. Each
-//! triangle is drawn alone by both sides, and every pixel of the screen is compared. How snapping and clipping, in
-//! which drivers may differ, are kept out of it is said in `view.rs`, how many triangles share a draw and stay
-//! apart in `driver.rs`. `docs/conformance.md` has what was found.
+//! The driver is any for Vulkan, and for OpenGL through EGL; Mesa's lavapipe and llvmpipe draw on the CPU. Each
+//! triangle is drawn alone by both sides, and every pixel of the screen is compared. `view.rs` explains how snapping
+//! and clipping, in which drivers may differ, are excluded; `driver.rs` explains how triangles share a draw and stay
+//! separate. `docs/conformance.md` has the results.
 //!
-//! The status is 1 when any pixel differs, or else 2 when an API that was asked for could not be compared to the end.
+//! The exit status is 1 if any pixel differs; otherwise 2 if a requested API could not be compared completely.
 
 mod args;
 mod compare;
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
     ExitCode::from(status)
 }
 
-/// Compares with one API's driver, if it opens, and prints what was seen.
+/// Compares with one API's driver, if it can be opened, and prints the results.
 fn compare_api<D: Driver>(api: &'static str, args: &Args, open: impl FnOnce() -> Result<D, Box<dyn Error>>) -> Outcome {
     let kinds = args.kinds();
     let mut tallies = vec![Tally::default(); kinds.len()];
@@ -64,7 +64,7 @@ fn compare_api<D: Driver>(api: &'static str, args: &Args, open: impl FnOnce() ->
         Err(why) => Some(format!("could not be opened: {why}")),
     };
     let triangles = tallies.iter().map(|t| t.triangles).sum();
-    // What was counted before a failure counts.
+    // The counts before a failure are included.
     let differences = if triangles > 0 { print(&kinds, &tallies) } else { 0 };
     println!();
     Outcome { api, triangles, differences, failure }
@@ -76,7 +76,7 @@ fn with(args: &Args, driver: &mut dyn Driver, kinds: &[Kind], tallies: &mut [Tal
     println!("{api}, rows {axis:?}: {}", driver.name());
     let bits = driver.subpixel_bits();
     if i64::from(bits) < i64::from(UNIT.ilog2()) {
-        return Err(format!("{bits} bits of subpixels do not hold the grid of 1/256").into());
+        return Err(format!("{bits} subpixel bits cannot represent the grid of 1/256").into());
     }
     let sizes = args.sizes();
     let bar = ProgressBar::new(sizes.iter().map(|s| s.1).sum()).with_style(ProgressStyle::with_template(
@@ -85,16 +85,16 @@ fn with(args: &Args, driver: &mut dyn Driver, kinds: &[Kind], tallies: &mut [Tal
     let start = Instant::now();
     for (i, (size, count)) in sizes.into_iter().enumerate() {
         let view = View::new(size, driver.most_side())?;
-        // Other triangles on every screen.
+        // Each screen gets different triangles.
         let seed = args.seed.wrapping_mul(1 << 8).wrapping_add(i as u64);
         compare(driver, view, (kinds, seed, count), tallies, &bar)?;
     }
     bar.finish_and_clear();
-    println!("{bits} bits of subpixels, seed {}, {:.0} s", args.seed, start.elapsed().as_secs_f64());
+    println!("{bits} subpixel bits, seed {}, {:.0} s", args.seed, start.elapsed().as_secs_f64());
     Ok(())
 }
 
-/// Prints the table, and says how many pixels differ.
+/// Prints the table, and returns how many pixels differ.
 fn print(kinds: &[Kind], tallies: &[Tally]) -> u64 {
     let heads = ["triangles", "covering any", "pixels", "covered", "on an edge", "differences"];
     println!("| {:<15} | {} |", "kind", heads.map(|head| format!("{head:>13}")).join(" | "));

@@ -1,4 +1,4 @@
-//! The library's side: each triangle alone in a clear buffer, and what it covers as one bit for each pixel.
+//! This library's side: each triangle is drawn alone into a cleared buffer; its coverage becomes one bit per pixel.
 
 use masked_occlusion_culling::{
     BackfaceWinding, DrawOptions, Error, MaskedOcclusionCulling, Settings, Vertices, YAxis,
@@ -12,7 +12,7 @@ pub struct Ours {
     moc: MaskedOcclusionCulling,
     view: View,
     depth: Vec<f32>,
-    /// The coverage of a batch: for each 32 triangles a plane of the screen, in it for each pixel a bit a triangle.
+    /// The coverage of a batch: one plane of the screen for each 32 triangles, with one bit per triangle in each pixel.
     planes: Vec<u32>,
 }
 
@@ -23,7 +23,7 @@ impl Ours {
         Ok(Self { moc, view, depth: vec![0.0; view.pixels()], planes: vec![0; WORDS * view.pixels()] })
     }
 
-    /// Draws a batch, and says of each triangle how many pixels it covers.
+    /// Draws a batch, and returns the number of pixels that each triangle covers.
     pub fn draw(&mut self, triangles: &[Triangle]) -> Result<Vec<u64>, Error> {
         assert!(triangles.len() <= BATCH);
         self.planes.fill(0);
@@ -48,7 +48,7 @@ impl Ours {
         Ok(u64::from(covered))
     }
 
-    /// The bits of a pixel in one of the planes.
+    /// The bits of a pixel in one plane.
     pub fn planes(&self) -> impl Iterator<Item = &[u32]> {
         self.planes.chunks_exact(self.view.pixels())
     }

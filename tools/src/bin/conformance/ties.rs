@@ -1,9 +1,9 @@
-//! How often the fill rule has to decide: the pixel centres that lie exactly on an edge.
+//! Counts the ties that the fill rule has to break: pixel centres exactly on an edge.
 
 use crate::view::View;
 use tools::oracle::{Triangle, UNIT, area};
 
-/// The centres on the screen on each edge, ends included, of a triangle that has an area.
+/// The number of pixel centres on the screen that are on each edge, ends included, of a triangle with a nonzero area.
 pub fn ties(t: &Triangle, view: View) -> u64 {
     if area(t) == 0 {
         return 0;
@@ -27,7 +27,7 @@ fn on_edge(a: (i64, i64), b: (i64, i64), view: View) -> u64 {
     rows.filter(hits).count() as u64
 }
 
-/// The pixels along a side whose centres lie from `low` to `high`.
+/// The pixels along one axis whose centres are from `low` to `high`.
 fn centres(low: i64, high: i64, size: usize) -> std::ops::Range<i64> {
     let first = (low + UNIT / 2 - 1).div_euclid(UNIT).max(0);
     let end = (high + UNIT / 2).div_euclid(UNIT).min(size as i64);
@@ -45,13 +45,13 @@ mod tests {
 
     #[test]
     fn centres_on_edges_are_counted() {
-        // Five centres on each leg, and five on the long side, which is a diagonal.
+        // Five centres on each leg, and five on the hypotenuse, which is a diagonal.
         assert_eq!(of([(128, 128), (128 + 4 * 256, 128), (128, 128 + 4 * 256)]), 15);
-        // A unit lower only the upright leg meets centres, but not that in its first row.
+        // One unit lower, only the vertical leg passes through centres, but not through that in its first row.
         assert_eq!(of([(128, 129), (128 + 4 * 256, 129), (128, 129 + 4 * 256)]), 4);
         // Off the screen on three sides: the row of eight.
         assert_eq!(of([(-5000, 128), (5000, 128), (0, -9000)]), 8);
-        // A line has no inside that a rule could give a pixel to.
+        // A degenerate triangle has no inside, so the rule has nothing to decide.
         assert_eq!(of([(128, 128), (640, 640), (1152, 1152)]), 0);
     }
 }

@@ -1,12 +1,12 @@
-//! What came of all that was asked for, and the program's status.
+//! The results for all requested APIs, and the exit status.
 
-/// What came of one API.
+/// The result for one API.
 pub struct Outcome {
     pub api: &'static str,
-    /// Triangles that were compared, and pixels that differed, also before a comparison that broke off.
+    /// Triangles compared, and pixels that differed, including those before a failure.
     pub triangles: u64,
     pub differences: u64,
-    /// Why it was not opened or not compared to the end.
+    /// Why it could not be opened or compared completely.
     pub failure: Option<String>,
 }
 
@@ -25,8 +25,8 @@ impl Outcome {
     }
 }
 
-/// A line for each API that was asked for, and the status: 1 when a pixel differs, or else 2 when one of them was not
-/// compared to the end, so that a missing driver never passes for a driver that agrees.
+/// One line for each requested API, and the exit status: 1 if a pixel differs, otherwise 2 if one of them was not
+/// compared completely, so that a missing driver never passes for one that agrees.
 pub fn verdict(outcomes: &[Outcome]) -> (Vec<String>, u8) {
     let mut lines: Vec<String> = outcomes.iter().map(Outcome::tell).collect();
     if outcomes.iter().all(|o| o.triangles == 0) {
@@ -62,7 +62,7 @@ mod tests {
         let (lines, status) = verdict(&[outcome("Vulkan", 9, 5, None), missing()]);
         assert_eq!(status, 1);
         assert_eq!(lines, ["Vulkan: FAILED, 5 pixels differ in 9 triangles", "OpenGL: not compared: no device"]);
-        // Whichever comes first.
+        // In either order.
         assert_eq!(verdict(&[missing(), outcome("Vulkan", 9, 5, None)]).1, 1);
     }
 

@@ -1,30 +1,30 @@
-//! The screen that is compared and the viewport around it: where a grid point stays a grid point.
+//! The screen that is compared, and the viewport around it, in which a grid point stays a grid point.
 //!
-//! Drivers differ in how they snap a vertex that lies between points of the subpixel grid, and nobody promises which way it
-//! goes. So no vertex lies between: each is a multiple of 1/256 pixel, and every step from there to the rasteriser
-//! is exact in f32. The viewport is a square whose side is a power of two, at an integer place, so that
+//! Drivers differ in how they snap a vertex between points of the subpixel grid, and the APIs do not specify it. So
+//! there are no such vertices: each is a multiple of 1/256 pixel, and every step from there to the rasteriser is exact
+//! in f32. The viewport is a square whose side is a power of two, at an integer position, so that
 //!
 //! * x / (side / 2), in normalised device coordinates, has at most 22 bits (x is within 8,192 pixels of the middle),
-//! * times w, divided by w or times 1/w change only the exponent, as w is a power of two,
-//! * times side / 2 does, too, and adding the middle gives a multiple of 1/256 below 2^15, 23 bits, in whichever order a
-//!   driver scales and adds, fused or not.
+//! * multiplying by w, and dividing by w or multiplying by 1/w, change only the exponent, because w is a power of two,
+//! * so does multiplying by side / 2, and adding the middle gives a multiple of 1/256 below 2^15, 23 bits, in whichever
+//!   order a driver scales and adds, fused or not.
 //!
-//! What arrives is on the grid of 1/256, which a driver with 8 bits of subpixels or more has. With more, the same points are
-//! on its finer grid.
+//! The result is on the grid of 1/256, which any driver with 8 or more subpixel bits represents; with more bits, the
+//! same points are on its finer grid.
 //!
-//! Clipping makes vertices, too, and those do lie between. So nothing is clipped: every vertex is inside of the view
-//! volume, which is the whole viewport, and the screen is cut out of it by the scissor rectangle, which makes none. That
-//! takes no look at the driver's guard band (llvmpipe's reaches one viewport farther on each side).
+//! Clipping creates vertices, too, and those are not on the grid. So nothing is clipped: every vertex is inside the
+//! view volume, which is the whole viewport, and the scissor rectangle, which creates no vertices, selects the screen.
+//! This does not depend on the driver's guard band (llvmpipe's extends one more viewport on each side).
 
 use masked_occlusion_culling::YAxis;
 
 use tools::oracle::{Triangle, UNIT, Vertex};
 
-/// The largest side of a viewport that is used; what is exact above rests on it.
+/// The largest viewport side that is used; the exactness above depends on it.
 const MOST_SIDE: u32 = 16_384;
 
-/// How far from the middle of a screen whose sides are no powers of two the library's own projection is exact enough to snap
-/// to the grid point that was meant; see `tests/support`.
+/// For screens whose sides are not powers of two: the distance from the middle up to which the library's own projection
+/// is exact enough to snap to the intended grid point; see `tests/support`.
 const ROUNDED_REACH: i64 = 4_095 * UNIT;
 
 /// A screen and the viewport around it.
@@ -37,7 +37,7 @@ pub struct View {
 }
 
 impl View {
-    /// A screen for a driver whose viewports have sides of `most` pixels at most.
+    /// A screen for a driver whose viewports have sides of at most `most` pixels.
     pub fn new((width, height): (u32, u32), most: u32) -> Result<Self, String> {
         let side = MOST_SIDE.min(if most == 0 { 0 } else { 1 << most.ilog2() });
         if width.max(height) > side {
@@ -55,14 +55,14 @@ impl View {
         (self.width as i64 / 2, self.height as i64 / 2)
     }
 
-    /// The viewport's least corner in pixels, as drivers take it.
+    /// The viewport's minimum corner in pixels, as drivers take it.
     pub fn corner(&self) -> (i32, i32) {
         let (x, y) = self.middle();
         let half = i64::from(self.side / 2);
         ((x - half) as i32, (y - half) as i32)
     }
 
-    /// How far from the viewport's middle, in units, a vertex may lie on both axes.
+    /// How far from the viewport's middle a vertex may be on either axis, in units.
     pub fn reach(&self) -> i64 {
         let whole = i64::from(self.side) * UNIT / 2;
         let powers = self.width.is_power_of_two() && self.height.is_power_of_two();
@@ -75,17 +75,18 @@ impl View {
         (x * UNIT, y * UNIT)
     }
 
-    /// The triangle with what is out of reach brought in from the other side, so that equal coordinates stay equal.
+    /// The triangle with coordinates out of range wrapped around from the other side, so that equal coordinates stay
+    /// equal.
     pub fn within_reach(&self, t: &Triangle) -> Triangle {
         let (centre, reach) = (self.centre(), self.reach());
         let fold = |v: i64, c: i64| c - reach + (v - c + reach).rem_euclid(2 * reach + 1);
         t.map(|v| Vertex { x: fold(v.x, centre.0), y: fold(v.y, centre.1), z: v.z })
     }
 
-    /// The clip-space vertex that the driver's viewport takes to `v`.
+    /// The clip-space vertex that the driver's viewport maps to `v`.
     ///
-    /// Rows are counted along the window's y in both APIs: in Vulkan, as in Direct3D, clip space and rows run down, in
-    /// OpenGL up. So one formula serves both.
+    /// Rows are counted along the window's y in both APIs: in Vulkan, as in Direct3D, both clip space and rows run
+    /// down, in OpenGL up. So one formula serves both.
     pub fn driver_vertex(&self, v: &Vertex) -> [f32; 4] {
         let centre = self.centre();
         let half = (i64::from(self.side) * UNIT / 2) as f64;
@@ -93,7 +94,8 @@ impl View {
         [((v.x - centre.0) as f64 / half * w) as f32, ((v.y - centre.1) as f64 / half * w) as f32, 0.0, w as f32]
     }
 
-    /// The clip-space vertex that the library takes to `v`; its clip space has y up whichever way rows are counted.
+    /// The clip-space vertex that the library maps to `v`; the library's clip space has y up whichever way rows are
+    /// counted.
     pub fn our_vertex(&self, v: &Vertex, axis: YAxis) -> [f32; 4] {
         let w = 1.0 / v.z;
         let place = |v: i64, size: usize| {
@@ -110,7 +112,8 @@ impl View {
 mod tests {
     use super::*;
 
-    /// The ways in which a driver may take a coordinate from clip space to the window, rounding after every step or not.
+    /// The ways in which a driver may transform a coordinate from clip space to the window, with or without rounding
+    /// after every step.
     fn window(c: f32, w: f32, side: f32, corner: f32) -> [f32; 5] {
         let (half, middle) = (side / 2.0, corner + side / 2.0);
         let (divided, reciprocal) = (c / w, c * (1.0 / w));
@@ -150,7 +153,7 @@ mod tests {
         let view = View::new((64, 64), 16384).unwrap();
         let far = [(9000, 32), (-9000, 32), (100, -8160)].map(|(x, y)| Vertex { x: x * UNIT, y: y * UNIT, z: 1.0 });
         let near = view.within_reach(&far);
-        // The span from end to end is 16,384 pixels and one unit.
+        // From end to end it is 16,384 pixels and one unit.
         assert_eq!(near.map(|v| v.x), [(9000 - 16384) * UNIT - 1, (16384 - 9000) * UNIT + 1, 100 * UNIT]);
         assert_eq!(near.map(|v| v.y), far.map(|v| v.y));
     }

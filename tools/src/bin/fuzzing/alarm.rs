@@ -1,4 +1,4 @@
-//! A crash or a hang names its episode before the process ends.
+//! After a crash or a hang, names the episode before the process ends.
 
 use core::ffi::c_int;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -6,10 +6,10 @@ use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 static SEED: AtomicU64 = AtomicU64::new(0);
 static EPISODE: AtomicU64 = AtomicU64::new(0);
 
-/// An episode takes milliseconds; this is a hang on any machine.
+/// Episodes take milliseconds, so this is a hang on any machine.
 const PATIENCE_SECONDS: u32 = 60;
 
-/// Catches the signals of memory faults, aborts and the alarm.
+/// Installs a handler for memory faults, aborts and the alarm.
 pub fn install() {
     for signal in [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT, libc::SIGALRM] {
         // SAFETY: an all-zero sigaction is a valid one; the handler calls write and _exit and nothing else,
@@ -23,7 +23,7 @@ pub fn install() {
     }
 }
 
-/// From here on it is this episode that fails.
+/// From now on, failures are attributed to this episode.
 pub fn enter(seed: u64, episode: u64) {
     SEED.store(seed, Relaxed);
     EPISODE.store(episode, Relaxed);

@@ -1,4 +1,4 @@
-//! The random calls on meshes, rectangles and buffers, and what has to hold after each.
+//! Random calls on meshes, rectangles and buffers, and the checks after each.
 
 use fastrand::Rng;
 use masked_occlusion_culling::MaskedOcclusionCulling;
@@ -20,7 +20,7 @@ pub struct Driver<'a> {
 }
 
 impl Driver<'_> {
-    /// One random call on each member of one family.
+    /// Makes one random call on each member of one family.
     pub fn step(&mut self, which: usize) -> Check {
         if self.families[which].size.is_none() && self.rng.u8(..4) != 0 {
             return self.set_resolution(which);
@@ -47,7 +47,7 @@ impl Driver<'_> {
     }
 
     pub(crate) fn render(&mut self, which: usize) -> Check {
-        // A pool would be flushed each time.
+        // A pool would have to be flushed each time.
         let looks = self.families[which].pool.is_none() && self.rng.u8(..8) == 0;
         let before = if looks { Some(self.check_depth(which)?) } else { None };
         let mesh = self.mesh(which)?;
@@ -75,7 +75,7 @@ impl Driver<'_> {
 
     pub(crate) fn test_triangles(&mut self, which: usize) -> Check {
         let mesh = self.mesh(which)?;
-        // Otherwise the object itself is queried, whatever the pool is doing.
+        // Otherwise the object is queried directly, whatever the pool is doing.
         let by_pool = self.rng.bool();
         let family = &mut self.families[which];
         let through = family.through();
@@ -136,7 +136,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// Merges a few objects: one by one, all at once, or by the pool.
+    /// Merges a few objects: one by one, all at once, or with the pool.
     pub(crate) fn merge(&mut self, which: usize) -> Check {
         let shift = self.rng.usize(..8);
         let count = if self.rng.bool() { 1 } else { self.rng.usize(..4) };
@@ -177,7 +177,7 @@ impl Driver<'_> {
 
     pub(crate) fn set_resolution(&mut self, which: usize) -> Check {
         let (width, height) = match self.families[1 - which].size {
-            // The same size as the other family has, so that merging is allowed.
+            // The size of the other family, so that they can be merged.
             Some(size) if self.rng.bool() => size,
             _ => hostile::resolution(&mut self.rng),
         };
@@ -234,7 +234,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// Reads the depth of every pixel, checks it, and returns its bits from the first row on.
+    /// Reads the depth of every pixel, checks it, and returns its bits, first row first.
     pub fn check_depth(&mut self, which: usize) -> Check<Vec<u32>> {
         self.settle(which)?;
         let family = &self.families[which];
@@ -262,7 +262,7 @@ impl Driver<'_> {
                 let (x, y) = (at % width as usize, at / width as usize);
                 eprintln!("at ({x}, {y}) the first object has {:e}, object {i} {:e}", first[at], pixels[at]);
             }
-            // A status that no function gives stands for the difference.
+            // A status that no function returns marks the difference.
             (if differ.is_some() { -1 } else { status }, ())
         })?;
         ensure((status == OK) == family.size.is_some(), || format!("ComputePixelDepthBuffer: status {status}"))?;
@@ -303,11 +303,11 @@ fn rect(moc: *const MaskedOcclusionCulling, [x0, y0, x1, y1]: [f32; 4], w: f32) 
     (status as i32, answer)
 }
 
-/// Draws a mesh, by the entry point that it is meant for.
+/// Draws a mesh with the entry point that it is meant for.
 fn render(moc: *mut MaskedOcclusionCulling, m: &Mesh) -> (i32, i32) {
     let mut answer = UNTOUCHED;
-    // SAFETY: a live object; each pointer is null or valid, and where the length of the vertices is not told,
-    // the layout is kept and every index is in range.
+    // SAFETY: a live object; each pointer is null or valid, and if the length of the vertices is not passed, the layout
+    // fits the array and every index is in range.
     let status = unsafe {
         if m.checked {
             MOC_RenderTrianglesChecked(
@@ -339,7 +339,7 @@ fn render(moc: *mut MaskedOcclusionCulling, m: &Mesh) -> (i32, i32) {
     (status as i32, answer)
 }
 
-/// Tests a mesh likewise.
+/// Tests a mesh in the same way.
 fn test(moc: *const MaskedOcclusionCulling, m: &Mesh) -> (i32, i32) {
     let mut answer = UNTOUCHED;
     // SAFETY: as in `render`.

@@ -1,4 +1,4 @@
-//! One sequence of calls on two families of objects, and what has to hold at its end.
+//! One sequence of calls on two families of objects, and the checks at its end.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -11,10 +11,10 @@ use crate::family::{Check, Family, ensure};
 use crate::guarded::Guarded;
 use crate::memory;
 
-/// So many meshes may be in flight in a pool.
+/// The maximum number of meshes in flight in a pool.
 const LENT: usize = 48;
 
-/// The arrays that calls read and write, all of them guarded.
+/// The arrays that calls read and write, all in guarded memory.
 pub struct Memory {
     pub vertices: Guarded,
     pub indices: Guarded,
@@ -22,10 +22,10 @@ pub struct Memory {
     pub layout: Guarded,
     pub scissor: Guarded,
     pub depth: Guarded,
-    /// Vertices and indices that a pool may still read, the oldest first, and how many of them.
+    /// Vertices and indices that a pool may still read, oldest first, and their number.
     lent: VecDeque<[Guarded; 2]>,
     pub lent_count: usize,
-    /// For each member of a family: the list structs, and what they point to.
+    /// For each member of a family: the list structs, and the memory that they point to.
     pub lists: Vec<(Guarded, Guarded)>,
 }
 
@@ -44,12 +44,12 @@ impl Memory {
         }
     }
 
-    /// Is every array lent, so that a pool has to be flushed before the next mesh?
+    /// Whether every array is in use by a pool, which has to be flushed before the next mesh.
     pub fn all_lent(&self) -> bool {
         self.lent_count == LENT
     }
 
-    /// Leaves the arrays of the last mesh as they are and takes those that were lent longest ago.
+    /// Leaves the arrays of the last mesh unchanged and takes the least recently used ones.
     pub fn lend(&mut self) {
         if let Some([vertices, indices]) = self.lent.pop_front() {
             let used = [replace(&mut self.vertices, vertices), replace(&mut self.indices, indices)];
@@ -59,12 +59,12 @@ impl Memory {
     }
 }
 
-/// What was done so far.
+/// Counts of what was done so far.
 #[derive(Default)]
 pub struct Tally {
     pub episodes: u64,
     pub calls: u64,
-    /// Of these, through a pool of threads, on one object each.
+    /// Those of them made through a thread pool, on one object each.
     pub pooled: u64,
 }
 
@@ -74,7 +74,7 @@ impl fmt::Display for Tally {
     }
 }
 
-/// Runs an episode; the same seed and number give the same calls. A single one is looked at after each call.
+/// Runs an episode; the same seed and number give the same calls. If only one is run, it is checked after each call.
 pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mut Tally) -> Check {
     let mut rng = Rng::with_seed(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number));
     let families = [family(&mut rng)?, family(&mut rng)?];
@@ -83,7 +83,7 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
         let which = driver.rng.usize(..2);
         driver.step(which).map_err(|failure| format!("call {call}: {failure}\n{}", driver.families[which]))?;
         if single {
-            // Closer to the cause, without a change to the calls that follow.
+            // Closer to the cause, without changing the calls that follow.
             let rng = driver.rng.clone();
             driver.check_depth(which).map_err(|failure| format!("after call {call}: {failure}"))?;
             driver.rng = rng;
@@ -94,7 +94,7 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
         driver.check_depth(which)?;
         driver.check_statistics(which)?;
     }
-    // In a stretch all other members are called, too.
+    // In a stretch, all other members are called, too.
     tally.pooled += driver.pooled;
     tally.calls += driver.pooled * driver.families[0].members.len() as u64;
     drop(driver);
@@ -104,6 +104,6 @@ pub fn run(seed: u64, number: u64, single: bool, memory: &mut Memory, tally: &mu
 
 fn family(rng: &mut Rng) -> Check<Family> {
     // The same axis more often than not, so that merging is allowed.
-    // Some of what threads leave out, they draw where it is counted.
+    // With statistics, threads draw some of what they otherwise skip.
     Family::new(rng.i32(0..4), i32::from(rng.u8(..4) == 0), rng.bool(), rng.bool())
 }

@@ -1,4 +1,4 @@
-//! Objects with the same settings on every instruction set: what one does, all have to do.
+//! Objects with the same settings on every instruction set, which must all behave the same.
 
 use std::ptr::null_mut;
 
@@ -14,10 +14,10 @@ pub const OCCLUDED: i32 = MOC_CullingResult::MOC_OCCLUDED as i32;
 pub const VIEW_CULLED: i32 = MOC_CullingResult::MOC_VIEW_CULLED as i32;
 
 pub const NO_BUFFER: i32 = MOC_Status::MOC_STATUS_NO_BUFFER as i32;
-/// Where a call that answers left its answer alone, or has none to give.
+/// The result of a call that left its result unchanged, or that has none.
 pub const UNTOUCHED: i32 = 77;
 
-/// What went wrong, in words.
+/// A description of the failure.
 pub type Check<T = ()> = Result<T, String>;
 
 pub fn ensure(holds: bool, what: impl FnOnce() -> String) -> Check {
@@ -32,13 +32,13 @@ pub struct Family {
     pub update_rule: i32,
     pub y_axis: i32,
     pub own_allocator: bool,
-    /// Nothing was drawn since it was cleared.
+    /// Nothing has been drawn since the last clear.
     pub empty: bool,
     /// While a pool draws into one member.
     pub pool: Option<Pool>,
-    /// A pool has a member, which is used directly meanwhile: no other pool may have it.
+    /// A member belongs to a pool but is currently used directly: no other pool may have it.
     pub attached: bool,
-    /// A pool was asked amid its work: how far its member looked depends on what was drawn by then.
+    /// A pool was queried while it was drawing: how much its member tested depends on what was drawn by then.
     pub asked_early: bool,
 }
 
@@ -80,7 +80,7 @@ impl Family {
             ensure(status == OK, || format!("MOC_GetImplementation: status {status}"))?;
             if seen.contains(&used) {
                 family.members.pop();
-                // SAFETY: an object just made, forgotten here.
+                // SAFETY: an object just created, which is not used after this.
                 unsafe { MOC_Destroy(moc) };
             }
             seen.push(used);
@@ -88,7 +88,7 @@ impl Family {
         Ok(family)
     }
 
-    /// Makes the same call on every member, which must give the same. A call gives its status first.
+    /// Makes the same call on every member; the results must agree. A call returns its status first.
     pub fn all<T: PartialEq + std::fmt::Debug>(
         &self,
         name: &str,
@@ -97,7 +97,7 @@ impl Family {
         let mut first: Option<(i32, T)> = None;
         for (i, &moc) in self.members.iter().enumerate() {
             let got = call(i, moc);
-            // Recordings, whose statuses come after that of a failure inside of the library, are not made here.
+            // Statuses after that of an internal error belong to recordings, which are not made here.
             ensure((OK..MOC_Status::MOC_STATUS_INTERNAL as i32).contains(&got.0), || {
                 format!("{name}: status {} from object {i}", got.0)
             })?;
@@ -111,14 +111,14 @@ impl Family {
         first.ok_or_else(|| "a family without members".into())
     }
 
-    /// The pool through which a member has to be called.
+    /// The pool through which a member must be called.
     pub fn through(&self) -> impl Fn(usize) -> Option<*const MOC_Threadpool> + Copy + use<> {
         let pool = self.pool.as_ref().map(|pool| (pool.member, pool.handle.cast_const()));
         move |i| pool.filter(|&(member, _)| member == i).map(|(_, handle)| handle)
     }
 
-    /// As `all`, for draws and queries; also what a pool answered, where it did. That may be an answer of before, so it
-    /// need not be the same until the pool was flushed: hidden then and not now, or the other way.
+    /// As `all`, for draws and queries; also returns the pool's result, if there is one. It may reflect an earlier
+    /// state, so it need not agree until the pool is flushed: hidden then and visible now, or the reverse.
     pub fn ask(
         &mut self,
         name: &str,
@@ -129,7 +129,7 @@ impl Family {
         let (status, ()) = self.all(name, |i, moc| {
             let (status, answer) = call(i, moc);
             answers.push(answer);
-            // A pool looks for the buffer first, an object last.
+            // A pool checks for the buffer first, an object last.
             let late = member.is_some_and(|member| member != i) && self.size.is_none() && status != OK;
             (if late { NO_BUFFER } else { status }, ())
         })?;
@@ -157,7 +157,7 @@ impl std::fmt::Display for Family {
 impl Drop for Family {
     fn drop(&mut self) {
         for &moc in &self.members {
-            // SAFETY: made in `new`, destroyed here once.
+            // SAFETY: created in `new`, destroyed only here.
             unsafe { MOC_Destroy(moc) };
         }
     }

@@ -1,8 +1,8 @@
-//! Memory that ends, and begins, at a page that nobody may touch: a read or write past an array is a crash.
+//! Memory that begins and ends at inaccessible pages: a read or write outside an array crashes.
 
 use std::ptr::null_mut;
 
-/// A writable region between two forbidden pages.
+/// A writable region between two inaccessible pages.
 pub struct Guarded {
     writable: *mut u8,
     bytes: usize,
@@ -12,7 +12,7 @@ pub struct Guarded {
 impl Guarded {
     /// Room for at least `bytes`.
     pub fn new(bytes: usize) -> Self {
-        // SAFETY: sysconf only answers.
+        // SAFETY: sysconf only returns a value.
         let page = usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }).expect("a page size");
         let bytes = bytes.next_multiple_of(page);
         let flags = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_NORESERVE;
@@ -27,14 +27,14 @@ impl Guarded {
         Self { writable, bytes, page }
     }
 
-    /// `len` bytes of unspecified contents that end at the forbidden page, or else begin behind one.
+    /// `len` bytes of unspecified contents that end right before an inaccessible page, or begin right after one.
     pub fn place(&mut self, len: usize, at_end: bool) -> *mut u8 {
         assert!(len <= self.bytes);
         // SAFETY: `len <= bytes`, so the offset is inside of the region.
         unsafe { self.writable.add(if at_end { self.bytes - len } else { 0 }) }
     }
 
-    /// A copy of `data` in such a place. At the end it is aligned to the size of a `T`'s parts of 4 bytes only.
+    /// A copy of `data` placed in the same way. At the end, only 4-byte alignment is guaranteed.
     pub fn put<T: Copy>(&mut self, data: &[T], at_end: bool) -> *mut T {
         let len = size_of_val(data);
         let place = self.place(len, at_end);

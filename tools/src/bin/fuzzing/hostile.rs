@@ -1,4 +1,4 @@
-//! Numbers that a program may pass by accident or on purpose.
+//! Values that a program may pass by accident or on purpose.
 
 use fastrand::Rng;
 use masked_occlusion_culling::capi::MOC_VertexLayout;
@@ -30,7 +30,7 @@ const SPECIAL: [f32; 24] = [
     4_294_967_296.0,
 ];
 
-/// One of the classic traps, or any 32 bits.
+/// A classic special value, or any 32 bits.
 pub fn float(rng: &mut Rng) -> f32 {
     if rng.bool() { SPECIAL[rng.usize(..SPECIAL.len())] } else { f32::from_bits(rng.u32(..)) }
 }
@@ -40,7 +40,7 @@ pub fn uniform(rng: &mut Rng, range: f32) -> f32 {
     (rng.f32() * 2.0 - 1.0) * range
 }
 
-/// Mostly from -1 to 1 and a little beyond, sometimes exactly an edge, sometimes hostile.
+/// Mostly from -1 to 1 and slightly beyond, sometimes exactly on an edge, sometimes hostile.
 pub fn coordinate(rng: &mut Rng) -> f32 {
     match rng.u8(..20) {
         0 => float(rng),
@@ -51,12 +51,12 @@ pub fn coordinate(rng: &mut Rng) -> f32 {
     }
 }
 
-/// Mostly an integer that an enumeration has, sometimes any.
+/// Mostly a value of the enumeration, sometimes any integer.
 pub fn enumeration(rng: &mut Rng, values: &[i32]) -> i32 {
     if rng.u8(..24) == 0 { rng.i32(..) } else { values[rng.usize(..values.len())] }
 }
 
-/// How the vertices of a mesh are strewn.
+/// How the vertices of a mesh are distributed.
 #[derive(Clone, Copy)]
 enum Kind {
     Ordinary,
@@ -73,7 +73,7 @@ pub fn vertices(rng: &mut Rng, count: usize, width: u32, height: u32, near: f32)
     use Kind::{Hostile, MixedScale, NearHugging, OnGrid, Ordinary, Sliver, Wall};
     let kinds = [Ordinary, Ordinary, Wall, NearHugging, Hostile, OnGrid, Sliver, MixedScale];
     let kind = kinds[rng.usize(..kinds.len())];
-    // One hostile number in a mesh of good ones is the common case in the field.
+    // One hostile number in an otherwise valid mesh is the common case in practice.
     let poison = if rng.u8(..6) == 0 { 0.05 } else { 0.0 };
     let (x0, y0) = (uniform(rng, 1.0), uniform(rng, 1.0));
     let spread = [1e-3, 0.02, 0.3, 2.0][rng.usize(..4)];
@@ -100,7 +100,7 @@ pub fn vertices(rng: &mut Rng, count: usize, width: u32, height: u32, near: f32)
                 }
                 Hostile => [float(rng), float(rng), float(rng)],
                 OnGrid => {
-                    // Exact corners and centres of pixels, also beyond the screen.
+                    // Exact pixel corners and centres, also off screen.
                     let pixel = |rng: &mut Rng, size: u32| {
                         let half_pixels = rng.i32(-8..size as i32 * 2 + 8);
                         half_pixels as f32 / size as f32 - 1.0
@@ -136,7 +136,7 @@ pub fn matrix(rng: &mut Rng) -> [f32; 16] {
     m
 }
 
-/// A layout of `count` vertices that can be kept: offsets that do not overlap.
+/// A valid layout for `count` vertices: the offsets do not overlap.
 pub fn kept_layout(rng: &mut Rng, count: usize) -> MOC_VertexLayout {
     let n = count as i32;
     let (stride, offset_y, offset_zw) =
@@ -144,7 +144,7 @@ pub fn kept_layout(rng: &mut Rng, count: usize) -> MOC_VertexLayout {
     MOC_VertexLayout { stride, offset_y, offset_zw }
 }
 
-/// Any layout at all.
+/// Any layout.
 pub fn layout(rng: &mut Rng) -> MOC_VertexLayout {
     let mut number = || match rng.u8(..4) {
         0 => rng.i32(..),
@@ -154,7 +154,7 @@ pub fn layout(rng: &mut Rng) -> MOC_VertexLayout {
     MOC_VertexLayout { stride: number(), offset_y: number(), offset_zw: number() }
 }
 
-/// Mostly small, sometimes as long and narrow as is accepted, sometimes refused.
+/// Mostly small, sometimes as long and narrow as is allowed, sometimes refused.
 pub fn resolution(rng: &mut Rng) -> (u32, u32) {
     match rng.u8(..24) {
         0 => (16_384, rng.u32(1..40)),

@@ -1,4 +1,4 @@
-//! Binning into lists of every capacity, and drawing lists that hold anything.
+//! Binning into lists of every capacity, and drawing lists with arbitrary contents.
 
 use masked_occlusion_culling::MaskedOcclusionCulling;
 use masked_occlusion_culling::capi::*;
@@ -9,20 +9,20 @@ use crate::hostile;
 use crate::mesh::{self, Mesh};
 
 const FLOATS: usize = 9;
-/// Behind every list but the last, which the forbidden page follows.
+/// Follows every list but the last, which an inaccessible page follows.
 const CANARY: [f32; 4] = [1.5e10; 4];
 const LIST_FULL: i32 = MOC_Status::MOC_STATUS_LIST_FULL as i32;
 
-/// The lists of one call: the same start for every member.
+/// The lists of one call, with the same initial contents for every member.
 struct Lists {
     capacity: u32,
     count: u32,
-    /// For each bin, what it holds before.
+    /// Initial contents of each bin.
     data: Vec<Vec<f32>>,
 }
 
 impl Driver<'_> {
-    /// Bins a mesh, perhaps scribbles over the lists, and draws them.
+    /// Bins a mesh, possibly overwrites parts of the lists, and draws them.
     pub(crate) fn bins(&mut self, which: usize) -> Check {
         self.settle(which)?;
         let rng = &mut self.rng;
@@ -49,7 +49,7 @@ impl Driver<'_> {
         })?;
         ensure(answer != OCCLUDED, || "BinTriangles answers OCCLUDED".into())?;
         if bin_size.is_some() {
-            // A full list is no refusal: what fits is in the lists.
+            // A full list is not a refusal: the triangles that fitted are in the lists.
             check_prediction("BinTriangles", &mesh, if status == LIST_FULL { OK } else { status })?;
         } else {
             ensure(status != OK, || "BinTriangles accepts bins that have no size".into())?;
@@ -90,7 +90,7 @@ impl Driver<'_> {
         }
     }
 
-    /// Draws every bin inside of its rectangle; the first member with two threads at once.
+    /// Draws every bin inside its rectangle; for the first member with two threads at once.
     fn draw_bins(
         &mut self,
         which: usize,
@@ -130,7 +130,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// Draws a list inside of any rectangle, and lists that no program could mean.
+    /// Draws a list inside an arbitrary rectangle, and invalid lists.
     fn draw_anywhere(&mut self, which: usize, placed: &[*mut MOC_TriList]) -> Check {
         let rng = &mut self.rng;
         let mut number = || match rng.u8(..6) {
@@ -204,7 +204,7 @@ impl Lists {
     }
 }
 
-/// The drawing of all bins of one object.
+/// Draws all bins of one object.
 struct Job<'a> {
     moc: *const MaskedOcclusionCulling,
     lists: *const MOC_TriList,
@@ -215,7 +215,7 @@ struct Job<'a> {
 unsafe impl Sync for Job<'_> {}
 
 impl Job<'_> {
-    /// Draws each `step`th bin from `first` on; the worst status.
+    /// Draws every `step`th bin from `first` on; returns the worst status.
     fn draw(&self, first: usize, step: usize) -> i32 {
         let mut worst = OK;
         for i in (first..self.rectangles.len()).step_by(step) {
@@ -227,7 +227,7 @@ impl Job<'_> {
     }
 }
 
-/// What the members say about the size of bins; nothing where there is none.
+/// The bin size according to the members; `None` if there is none.
 fn bin_size(family: &Family, bins_w: u32, bins_h: u32) -> Check<Option<(u32, u32)>> {
     let (status, size) = family.all("ComputeBinWidthHeight", |_, moc| {
         let (mut width, mut height) = (0, 0);
@@ -238,7 +238,7 @@ fn bin_size(family: &Family, bins_w: u32, bins_h: u32) -> Check<Option<(u32, u32
     Ok((status == OK).then_some(size))
 }
 
-/// Plausible for a list, in 1/256 pixels, or hostile.
+/// A plausible coordinate for a list, in 1/256 pixels, or a hostile one.
 fn list_float(rng: &mut fastrand::Rng) -> f32 {
     match rng.u8(..4) {
         0 => hostile::float(rng),

@@ -1,9 +1,9 @@
-//! A hostile driver of the C interface: random sequences of calls with random, wrong and wicked arguments.
+//! Fuzzes the C interface with random sequences of calls with random, invalid and adversarial arguments.
 //!
-//! Every sequence goes to one object an instruction set, which have to agree in every status, answer,
-//! list, statistic and bit of depth; now and then one of them is drawn into by a pool of threads. All arrays border on
-//! forbidden pages. It ends with status 1, and with the seed and number of the episode, at the first crash, hang,
-//! disagreement or impossible answer.
+//! Every sequence runs on one object per instruction set; the objects must agree in every status, result, list,
+//! statistic and bit of depth. At times one of them is drawn into by a thread pool. All arrays are bordered by
+//! inaccessible pages. At the first crash, hang, disagreement or impossible result, the program exits with status 1 and
+//! names the seed and number of the episode.
 //!
 //! `cargo tool fuzzing -- --seconds 30 --seed 1`
 
@@ -36,16 +36,16 @@ mod stretch;
 fn main() -> std::process::ExitCode {
     use clap::Parser;
 
-    /// Drives the C interface with random and hostile calls.
+    /// Fuzzes the C interface with random and hostile calls.
     #[derive(Parser)]
     struct Arguments {
-        /// How long to go on.
+        /// Duration in seconds.
         #[arg(long, default_value_t = 30.0)]
         seconds: f64,
         /// The same seed gives the same calls.
         #[arg(long, default_value_t = 1)]
         seed: u64,
-        /// Run only this episode: the one that a failure named.
+        /// Runs only this episode, as named by a failure.
         #[arg(long)]
         episode: Option<u64>,
     }
@@ -67,11 +67,11 @@ fn main() -> std::process::ExitCode {
         }
     }
     let seconds = start.elapsed().as_secs_f64();
-    println!("seed {}: {tally}, {:.0} calls a second, no failure", arguments.seed, tally.calls as f64 / seconds);
+    println!("seed {}: {tally}, {:.0} calls per second, no failure", arguments.seed, tally.calls as f64 / seconds);
     std::process::ExitCode::SUCCESS
 }
 
 #[cfg(not(unix))]
 fn main() {
-    println!("fuzzing needs the memory protection of a Unix system");
+    println!("fuzzing needs Unix memory protection");
 }

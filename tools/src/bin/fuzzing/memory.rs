@@ -1,14 +1,14 @@
-//! The allocator callbacks of the objects under test: it counts, it poisons, and it can be told to fail.
+//! The allocator callbacks of the objects under test: they count and poison blocks, and can be made to fail.
 
 use core::ffi::c_void;
 use core::sync::atomic::{AtomicI64, AtomicU8, Ordering::Relaxed};
 
-/// Blocks handed out and not returned.
+/// Number of live blocks.
 static LIVE: AtomicI64 = AtomicI64::new(0);
 static MODE: AtomicU8 = AtomicU8::new(0);
 static POISON: AtomicU8 = AtomicU8::new(0);
 
-/// What the allocator does next.
+/// What the allocator does on the next call.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum Mode {
@@ -25,7 +25,7 @@ pub fn live_blocks() -> i64 {
     LIVE.load(Relaxed)
 }
 
-/// The address of the block that the system gave lies in the 16 bytes before ours.
+/// The 16 bytes before the block hold the address of the system's block.
 const HEADER: usize = 16;
 
 pub unsafe extern "C" fn alloc(alignment: usize, size: usize) -> *mut c_void {

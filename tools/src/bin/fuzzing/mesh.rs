@@ -1,4 +1,4 @@
-//! Meshes as a program may pass them: mostly good, in every layout, sometimes wrong in every argument.
+//! Meshes as a program may pass them: mostly valid, in every layout, sometimes with a wrong value in any argument.
 
 use std::ptr::null;
 
@@ -19,13 +19,13 @@ pub struct Mesh {
     pub winding: i32,
     pub clip_planes: i32,
     pub layout: *const MOC_VertexLayout,
-    /// It goes to the entry point that is told the length of the vertices.
+    /// Whether it is passed to the entry point that takes the length of the vertices.
     pub checked: bool,
-    /// Every vertex that it names can be read, also by an entry point that is not told the length.
+    /// Whether every vertex that it refers to can be read, even by an entry point that does not take the length.
     pub whole: bool,
-    /// Whether it has to be refused, where that is known.
+    /// Whether it must be refused, if that is known.
     pub refused: Option<bool>,
-    /// The corners as they were strewn, where it is known, for a failure's report.
+    /// The corners as generated, if known, for the report of a failure.
     pub corners: Vec<[[f32; 3]; 3]>,
 }
 
@@ -62,7 +62,7 @@ pub fn random(rng: &mut Rng, memory: &mut Memory, family: &Family) -> Mesh {
     let layout_ptr =
         if default_layout && rng.bool() { null() } else { memory.layout.put(&[layout], rng.bool()).cast_const() };
 
-    // Only the length can protect against a layout or an index that leaves the array.
+    // Only the length protects against a layout or an index that leaves the array.
     let checked = any_layout || rng.bool();
     let readable = readable_vertices(bytes / 4 * 4, kept);
     let mut indices: Vec<u32> = (0..3 * n).map(|_| rng.u32(..count as u32)).collect();
@@ -112,7 +112,7 @@ pub fn random(rng: &mut Rng, memory: &mut Memory, family: &Family) -> Mesh {
     mesh
 }
 
-/// The positions as `layout` wants them, with NaN between; and how many bytes they take.
+/// The positions in `layout`, with NaN in between; and their size in bytes.
 fn place_vertices(
     rng: &mut Rng,
     memory: &mut Memory,
@@ -130,7 +130,7 @@ fn place_vertices(
     (memory.vertices.put(&bytes, rng.bool()).cast_const().cast(), bytes.len())
 }
 
-/// How many vertices of a kept layout lie in `bytes`.
+/// Number of vertices of a valid layout that fit in `bytes`.
 fn readable_vertices(bytes: usize, layout: MOC_VertexLayout) -> usize {
     let last = layout.offset_y.max(layout.offset_zw) as usize + 4;
     if bytes < last { 0 } else { 1 + (bytes - last) / layout.stride as usize }

@@ -1,4 +1,4 @@
-//! The random calls around the objects themselves: settings, getters, transforms, and null pointers.
+//! Random calls on the objects themselves: settings, getters, transforms, and null pointers.
 
 use std::ptr::{null, null_mut};
 
@@ -12,7 +12,7 @@ use crate::memory::{self, Mode};
 pub(crate) const NULL_POINTER: i32 = MOC_Status::MOC_STATUS_NULL_POINTER as i32;
 
 impl Driver<'_> {
-    /// Every member counted the same, and nothing below zero.
+    /// Checks that the statistics of all members agree, and that no count is negative.
     pub fn check_statistics(&mut self, which: usize) -> Check {
         self.settle(which)?;
         let family = &self.families[which];
@@ -25,7 +25,7 @@ impl Driver<'_> {
             let status = status.max(unsafe { MOC_GetDroppedTriangles(moc, &mut dropped) } as i32);
             let status = if counts.iter().any(|c| *c < 0) || dropped < 0 { -1 } else { status };
             if family.asked_early {
-                // Triangles and tiles that queries looked at.
+                // Triangles and tiles that queries tested.
                 counts[8..].fill(0);
             }
             (status, (counts, dropped))
@@ -65,7 +65,7 @@ impl Driver<'_> {
         ensure(status == OK, || format!("TransformVertices: status {status}"))
     }
 
-    /// Objects of any settings: made or refused, never half made.
+    /// Creates objects with arbitrary settings: each is either created completely or refused.
     pub(crate) fn settings(&mut self) -> Check {
         let rng = &mut self.rng;
         let mut settings = MOC_Settings {
@@ -102,7 +102,7 @@ impl Driver<'_> {
         ensure(status == OK, || format!("Destroy: status {status}"))
     }
 
-    /// Null in place of the object, and of each answer that has to be written.
+    /// Passes null for the object, and for each required output.
     pub(crate) fn nulls(&mut self) -> Check {
         let moc = self.families[0].members[0];
         let (mut a, mut b, mut f, mut i) = (0u32, 0u32, 0f32, 0i32);

@@ -1,9 +1,9 @@
-//! The pool of threads: what is set there, what it may still read, and what it may answer.
+//! The thread pool: its state, the arrays that it may still read, and the results that it may return.
 //!
-//! Once the pool was flushed, all members have to agree, as ever. Before, the pool may answer a query as it would have been
-//! right at a moment since the last flush or clear: less is drawn, and a later triangle may also take the place of a layer
-//! that hid more. So a pool that says OCCLUDED of a rectangle is held to the nearest depth that each pixel had in the
-//! meantime.
+//! After a flush all members must agree, as usual. Before it, a pool may answer a query with any result that was
+//! correct at some moment since the last flush or clear: less was drawn then, or a later triangle has replaced a layer
+//! that hid more. So if a pool returns OCCLUDED for a rectangle, it is checked against the nearest depth that each
+//! pixel had in the meantime.
 
 use std::ptr::{null, null_mut};
 
@@ -14,20 +14,20 @@ use crate::family::{Check, Family, OK, UNTOUCHED, ensure};
 use crate::mesh::{self, Mesh};
 use crate::objects::NULL_POINTER;
 
-/// Larger buffers are not looked at after each call.
+/// Larger buffers are not checked after each call.
 const FEW_PIXELS: usize = 100_000;
 
-/// A pool that draws into a member of a family, and what is set there.
+/// A pool that draws into a member of a family, and its state.
 pub struct Pool {
     pub handle: *mut MOC_Threadpool,
     pub member: usize,
-    /// Nothing was submitted since it was flushed.
+    /// Nothing has been submitted since the last flush.
     pub settled: bool,
     pub matrix: Option<[f32; 16]>,
     pub layout: MOC_VertexLayout,
-    /// It is asked while it draws.
+    /// It is queried while it draws.
     pub asks_early: bool,
-    /// The nearest that each pixel was since the last flush or clear; nothing where that is not known.
+    /// The nearest depth of each pixel since the last flush or clear; `None` if unknown.
     nearest: Vec<f32>,
 }
 
@@ -39,7 +39,7 @@ impl Pool {
         Self { handle, member: 0, settled: true, matrix, layout, asks_early, nearest: Vec::new() }
     }
 
-    /// All that was submitted is drawn.
+    /// Everything submitted is drawn.
     pub fn flushed(&mut self) {
         self.settled = true;
     }
@@ -62,7 +62,7 @@ impl Driver<'_> {
         self.flushed(which)
     }
 
-    /// A call flushed the pool: everything is drawn, and the arrays may be written to again.
+    /// A call has flushed the pool: everything is drawn, and the arrays may be overwritten.
     pub(crate) fn flushed(&mut self, which: usize) -> Check {
         self.submitted(which, true)?;
         if let Some(pool) = &mut self.families[which].pool {
@@ -72,7 +72,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// Takes note of what has been submitted. `anew`: what was there before hides nothing any more, or is drawn.
+    /// Records that something was submitted. `anew`: earlier contents no longer hide anything, or are drawn.
     pub(crate) fn submitted(&mut self, which: usize, anew: bool) -> Check {
         let Family { members, size, pool, .. } = &mut self.families[which];
         let Some(pool) = pool else { return Ok(()) };
@@ -96,12 +96,12 @@ impl Driver<'_> {
         ensure(status == OK, || format!("ComputePixelDepthBuffer: status {status}"))
     }
 
-    /// A mesh whose arrays may be read as long as the family's pool needs them, and with which its settings agree.
+    /// A mesh whose arrays stay readable as long as the family's pool needs them, and that matches the pool's state.
     pub(crate) fn mesh(&mut self, which: usize) -> Check<Mesh> {
         if self.families[which].pool.is_none() {
             return Ok(mesh::random(&mut self.rng, self.memory, &self.families[which]));
         }
-        // Now and then what was read is overwritten as soon as that is allowed.
+        // Sometimes the arrays are overwritten as soon as that is allowed.
         if self.memory.all_lent() || self.rng.u8(..40) == 0 {
             self.settle(which)?;
         } else {
@@ -135,7 +135,7 @@ impl Driver<'_> {
         Ok(mesh)
     }
 
-    /// Null in place of the pool, and of what has to be named; numbers that no pool can have.
+    /// Passes null for the pool and for required arguments, and numbers that no pool can have.
     pub(crate) fn pool_nulls(&mut self) -> Check {
         let (mut answer, mut depth, mut pool) = (0, 0.0, null_mut());
         // SAFETY: null where the functions say that they refuse it, else a live pool and places to write.
@@ -192,7 +192,8 @@ impl Driver<'_> {
 }
 
 impl Family {
-    /// Could a pool say OCCLUDED of a rectangle? Each pixel whose centre is inside was as near at some moment.
+    /// Whether a pool could return OCCLUDED for a rectangle: each pixel whose centre is inside was at least as near at
+    /// some moment.
     pub fn was_hidden(&self, [x0, y0, x1, y1]: [f32; 4], w: f32) -> Check {
         let (Some((width, height)), Some(pool)) = (self.size, &self.pool) else { return Ok(()) };
         if pool.nearest.is_empty() {
@@ -229,7 +230,7 @@ pub const EMPTY: MOC_Mesh = MOC_Mesh {
     clip_planes: 0x1f,
 };
 
-/// The mesh as a struct; null for the layout means the same as in the other functions.
+/// The mesh as a struct; a null layout means the same as in the other functions.
 fn described(m: &Mesh) -> MOC_Mesh {
     MOC_Mesh {
         vertices: m.vertices,
@@ -244,7 +245,7 @@ fn described(m: &Mesh) -> MOC_Mesh {
     }
 }
 
-/// Draws a mesh, with the matrix and layout set on the pool or passed with the call, which are the same. There is no result.
+/// Draws a mesh with its matrix and layout either set on the pool or passed with the call. There is no result.
 pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);
     // SAFETY: a live pool; each pointer is null or valid, and the arrays stay as they are until it was flushed.
@@ -258,7 +259,7 @@ pub fn render(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     (status as i32, UNTOUCHED)
 }
 
-/// Tests a mesh likewise.
+/// Tests a mesh in the same way.
 pub fn test(pool: *const MOC_Threadpool, m: &Mesh) -> (i32, i32) {
     let mut answer = UNTOUCHED;
     let (n, winding, planes) = (m.n_triangles, m.winding, m.clip_planes);

@@ -1,4 +1,5 @@
-//! Stretches of calls in which a pool of threads draws into one member of a family, while the others are drawn into directly.
+//! Stretches of calls in which a thread pool draws into one member of a family, while the others are drawn into
+//! directly.
 
 use std::ptr::{null, null_mut};
 
@@ -11,7 +12,7 @@ use crate::hostile;
 use crate::pool::{EMPTY, Pool};
 
 impl Driver<'_> {
-    /// Some tens of calls through a pool.
+    /// Makes some tens of calls through a pool.
     pub(crate) fn stretch(&mut self, which: usize) -> Check {
         if self.families[which].pool.is_some() || self.families[which].attached {
             return Ok(());
@@ -36,7 +37,8 @@ impl Driver<'_> {
             }
             self.pooled += 1;
         }
-        // Where nobody flushes, letting go of it does. After a failure, too: the other family may go before this one.
+        // Destroying the pool flushes it if nothing else did, also after a failure: the other family may be destroyed
+        // before this one.
         if self.rng.bool() {
             done = done.and_then(|()| self.settle(which));
         }
@@ -74,7 +76,7 @@ impl Driver<'_> {
         }
     }
 
-    /// Pending batches behind a clear.
+    /// Clears, then leaves batches pending.
     fn frame(&mut self, which: usize) -> Check {
         self.wake(which, false)?;
         self.clear(which).and_then(|()| self.flushed(which))?;
@@ -87,7 +89,7 @@ impl Driver<'_> {
         self.wake(which, wakes)
     }
 
-    /// One piece of the pending work, or none.
+    /// Does one piece of the pending work, if there is any.
     fn work_once(&mut self, which: usize) -> Check {
         let Some(pool) = &self.families[which].pool else { return Ok(()) };
         let (mut worked, mut done) = (UNTOUCHED, UNTOUCHED);
@@ -99,7 +101,7 @@ impl Driver<'_> {
         ensure(good, || format!("working once: {statuses:?}, {worked}, {done}"))
     }
 
-    /// Gives the pool an object, and sometimes sets a near plane after that.
+    /// Sets the pool's object, and sometimes a near plane after that.
     fn attach(&mut self, which: usize) -> Check {
         let member = self.rng.usize(..self.families[which].members.len());
         let near = if self.rng.bool() { Some(self.rng.f32()) } else { None };
@@ -114,7 +116,7 @@ impl Driver<'_> {
         };
         ensure(statuses.iter().all(|&status| status as i32 == OK), || format!("attaching: {statuses:?}"))?;
         if let Some(near) = near {
-            // The pool's object got it from the pool; if none is set, it keeps its own.
+            // The object gets a near plane set through the pool; otherwise it keeps its own.
             for (_, &moc) in family.members.iter().enumerate().filter(|&(i, _)| i != member) {
                 // SAFETY: a live object that nobody else uses.
                 unsafe { MOC_SetNearClipPlane(moc, near) };
@@ -125,7 +127,7 @@ impl Driver<'_> {
         self.wake_or_suspend(which)
     }
 
-    /// Takes the object away: every call that needs one is refused.
+    /// Removes the object: every call that needs one is refused.
     fn exchange(&mut self, which: usize) -> Check {
         let (mut answer, mut depth) = (UNTOUCHED, 0.0);
         let Some(pool) = &mut self.families[which].pool else { return Ok(()) };
@@ -149,13 +151,13 @@ impl Driver<'_> {
         };
         let wrong = refused.iter().position(|&status| status as i32 != NO_BUFFER);
         ensure(status == OK && wrong.is_none(), || format!("a pool without an object: {status}, call {wrong:?}"))?;
-        // What was submitted is drawn by now.
+        // Everything submitted is drawn by now.
         pool.flushed();
         self.memory.lent_count = 0;
         self.attach(which)
     }
 
-    /// Between a flush and the next call of the pool everybody may use the object.
+    /// Between a flush and the next call of the pool, any thread may use the object.
     fn directly(&mut self, which: usize) -> Check {
         self.settle(which)?;
         if self.rng.bool() {
@@ -171,7 +173,7 @@ impl Driver<'_> {
             done?;
         }
         self.submitted(which, true)?;
-        // Nothing was submitted: the pool answers as the others do.
+        // Nothing was submitted: the pool gives the same results as the others.
         if let Some(pool) = &mut self.families[which].pool {
             pool.flushed();
         }
@@ -183,7 +185,7 @@ impl Driver<'_> {
         self.wake(which, wakes)
     }
 
-    /// Once or twice, or the threads sleep.
+    /// Flushes once or twice, or puts the threads to sleep.
     fn wake(&mut self, which: usize, wakes: bool) -> Check {
         let times = self.rng.u8(1..3);
         let Some(pool) = &self.families[which].pool else { return Ok(()) };
@@ -198,7 +200,7 @@ impl Driver<'_> {
         if wakes { Ok(()) } else { self.flushed(which) }
     }
 
-    /// A matrix for the meshes that take what is set, and a layout that no mesh has.
+    /// Sets a matrix for meshes without their own, and a layout that no mesh has.
     fn set_transform(&mut self, which: usize) -> Check {
         let matrix = if self.rng.bool() { Some(hostile::matrix(&mut self.rng)) } else { None };
         let layout = hostile::layout(&mut self.rng);
@@ -216,7 +218,7 @@ impl Driver<'_> {
         ensure(statuses == [MOC_Status::MOC_STATUS_OK, refused], || format!("matrix and layout: {statuses:?}"))
     }
 
-    /// The pool's own depths, after its own flush.
+    /// Reads the depths through the pool, after its own flush.
     fn pool_depth(&mut self, which: usize) -> Check {
         let (flip, family) = (self.rng.i32(..2), &self.families[which]);
         let (width, height) = family.size.unwrap_or((1, 1));
@@ -231,7 +233,7 @@ impl Driver<'_> {
                     None => MOC_ComputePixelDepthBuffer(moc, depth, flip),
                 };
                 let bits = std::slice::from_raw_parts(depth.cast::<u32>(), pixels);
-                // Not the depths themselves, which no message could hold.
+                // Not the depths themselves, which would not fit in a message.
                 (status as i32, bits.iter().fold(0u64, |sum, &d| sum.wrapping_mul(0x9e37_79b9).wrapping_add(d.into())))
             }
         };

@@ -4,18 +4,18 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-/// Measures speed against error, setting by setting, and writes one page of HTML with plots, tables and pictures.
+/// Measures speed against error for each setting, and writes one HTML page with plots, tables and pictures.
 #[derive(Debug, Parser)]
 #[command(name = "report")]
 pub struct Args {
-    /// Scenes to be measured after the generated ones: .obj, .gltf or .glb files; cameras of glTF files are used
+    /// Scenes to be measured after the generated ones: .obj, .gltf or .glb files; the cameras of glTF files are used
     pub files: Vec<PathBuf>,
 
-    /// The page that is written
+    /// File for the page
     #[arg(long, value_name = "FILE", default_value = "target/report.html")]
     pub out: PathBuf,
 
-    /// How often each frame is timed
+    /// Number of times each frame is measured
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=10_001))]
     pub repeats: u32,
 
@@ -23,21 +23,21 @@ pub struct Args {
     #[arg(long)]
     pub every: bool,
 
-    /// Few settings on small screens: seconds, to see that all of it works
+    /// A few settings on small screens: takes seconds, to check that everything works
     #[arg(long, conflicts_with = "every")]
     pub short: bool,
 
-    /// Leaves the generated scenes out of the measurement of settings
+    /// Omits the generated scenes from the measurement of settings
     #[arg(long, requires = "files")]
     pub only_files: bool,
 
-    /// A shared object made of tools/src/scaling/other.cpp and another library, which then stands in the plots of cost, too
+    /// A shared object built from tools/src/scaling/other.cpp and another library, to be included in the plots of cost
     #[arg(long, value_name = "FILE")]
     pub other: Option<PathBuf>,
 }
 
 impl Args {
-    /// What the page says after the name of the program; of files only their names.
+    /// The command line as shown on the page, after the program's name; only the file names of paths.
     pub fn shown(&self) -> String {
         let mut shown = String::new();
         let mut add = |is_set: bool, text: &str| {

@@ -1,4 +1,4 @@
-//! The z-buffer of all pixels as something that is measured beside the library.
+//! The full-resolution z-buffer as a subject of measurement, for comparison with the library.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -20,7 +20,7 @@ use tools::scaling::mesh::Mesh;
 pub struct HizCuller {
     hiz: Hiz,
     near: f32,
-    /// The vertices of the meshes that were drawn, as this buffer reads them.
+    /// The vertices of the meshes drawn so far, in the form that this buffer reads.
     positions: HashMap<*const [f32; 4], Vec<[f32; 4]>>,
 }
 
@@ -50,7 +50,8 @@ impl Culler for HizCuller {
     }
 
     fn draw(&mut self, mesh: &Mesh, model_to_clip: &Mat4) {
-        // Made in the first frame, which is not timed. A mesh lives as long as its scene, for which the size is set anew.
+        // Built in the first frame, which is not timed. A mesh lives as long as its scene, and the size is set again
+        // for each scene.
         let made = || mesh.vertices().iter().map(|&[x, y, _, z]| [x, y, z, 1.0]).collect();
         let positions = self.positions.entry(mesh.vertices().as_ptr()).or_insert_with(made);
         let hiz = &mut self.hiz;
@@ -69,7 +70,7 @@ impl Culler for HizCuller {
     }
 }
 
-/// Draws all occluders, one after the other.
+/// Draws all occluders, one after another.
 pub fn draw(hiz: &mut Hiz, occluders: &[Occluder], view: &View) {
     for o in occluders {
         hiz.winding = o.winding();
@@ -79,7 +80,7 @@ pub fn draw(hiz: &mut Hiz, occluders: &[Occluder], view: &View) {
     }
 }
 
-/// A scene's hidden objects with this buffer, on the screen, for each order.
+/// Culls a scene's hidden objects with this buffer at screen resolution, for each order.
 pub fn survey(subject: &Subject, repeats: u32, mut tick: impl FnMut()) -> Result<Vec<Baseline>> {
     let mut found: Vec<(f64, Share)> = vec![(0.0, Share::default()); ORDERS.len()];
     for view in &subject.views {

@@ -1,23 +1,23 @@
-//! A generated world of cubes, as games have it: hills, caves, trees, in chunks of 16x16x16, of which only the faces between
-//! filled and empty are there.
+//! A generated world of cubes, as in games: hills, caves, trees, in chunks of 16x16x16. Only the faces between filled
+//! and empty cubes are generated.
 
 use glam::{Vec3, vec3};
 
 use demo::scene::{Mesh, Scene};
 
-/// Blocks in x and z, and up.
+/// Size of the world in blocks: in x and z, and in height.
 const SIZE: i32 = 160;
 const HEIGHT: i32 = 48;
 const CHUNK: i32 = 16;
 
-/// Where it is seen from, and what is looked at: on a hill, in a valley, in a cave's mouth.
+/// Camera positions and targets: on a hill, in a valley, in a cave's mouth.
 pub const PLACES: [(Vec3, Vec3); 3] = [
     (vec3(12.0, 42.0, 12.0), vec3(90.0, 18.0, 90.0)),
     (vec3(80.5, 32.0, 150.5), vec3(70.0, 24.0, 20.0)),
     (vec3(150.5, 30.0, 70.5), vec3(10.0, 20.0, 90.0)),
 ];
 
-/// A block, by integers.
+/// A block, by its integer coordinates.
 fn block(x: i32, y: i32, z: i32) -> Vec3 {
     vec3(x as f32, y as f32, z as f32)
 }
@@ -26,7 +26,7 @@ pub fn generate() -> Scene {
     let index = |p: Vec3| ((p.y as i32 * SIZE + p.z as i32) * SIZE + p.x as i32) as usize;
     let filled: Vec<bool> =
         (0..HEIGHT * SIZE * SIZE).map(|i| is_filled(block(i % SIZE, i / (SIZE * SIZE), i / SIZE % SIZE))).collect();
-    // Beyond the sides and the bottom there is rock, so that the world has no faces there; above it there is air.
+    // Outside the sides and the bottom everything is rock, so that there are no faces there; above it is air.
     let at = |p: Vec3| {
         let inside = p.cmpge(Vec3::ZERO).all() && p.cmplt(block(SIZE, HEIGHT, SIZE)).all();
         if inside { filled[index(p)] } else { p.y < HEIGHT as f32 }
@@ -47,7 +47,7 @@ pub fn generate() -> Scene {
     scene
 }
 
-/// The sides of a block behind which there is nothing.
+/// The sides of a block that border on air.
 fn faces(mesh: &mut Mesh, p: Vec3, at: impl Fn(Vec3) -> bool) {
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
@@ -55,7 +55,7 @@ fn faces(mesh: &mut Mesh, p: Vec3, at: impl Fn(Vec3) -> bool) {
             if at(p + normal) {
                 continue;
             }
-            // Two directions that turn counter-clockwise around the normal.
+            // Two directions that run counter-clockwise around the normal.
             let (u, v) = (Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]);
             let (u, v) = if side > 0.0 { (u, v) } else { (v, u) };
             let corner = p + normal.max(Vec3::ZERO);
@@ -69,7 +69,7 @@ fn is_filled(p: Vec3) -> bool {
     let ground = 20.0 + 11.0 * smooth(x / 37.0, 0.0, z / 37.0) + 4.0 * smooth(x / 11.0, 7.0, z / 11.0);
     let cave = smooth(x / 13.0, y / 9.0, z / 13.0) + 0.5 * smooth(x / 6.0, y / 6.0 + 40.0, z / 6.0);
     let is_ground = y < ground && (cave < 0.62 || y < 2.0);
-    // A trunk in every second cell of nine blocks, and leaves around its top.
+    // A trunk in every second cell of nine blocks, with leaves around its top.
     let cell = vec3((x / 9.0).floor(), 0.0, (z / 9.0).floor());
     let middle = cell * 9.0 + vec3(4.0, 0.0, 4.0);
     let foot = 20.0
@@ -81,7 +81,7 @@ fn is_filled(p: Vec3) -> bool {
     is_ground || is_tree
 }
 
-/// Noise from -1 to 1 that changes smoothly over a distance of 1.
+/// Smooth noise from -1 to 1 with a feature size of 1.
 fn smooth(x: f32, y: f32, z: f32) -> f32 {
     let p = vec3(x, y, z);
     let (cell, f) = (p.floor(), p - p.floor());
@@ -92,7 +92,7 @@ fn smooth(x: f32, y: f32, z: f32) -> f32 {
     mix(mix(row(0, 0), row(1, 0), f.y), mix(row(0, 1), row(1, 1), f.y), f.z)
 }
 
-/// A number from -1 to 1 for each place.
+/// A number from -1 to 1 for each lattice point.
 fn noise(p: Vec3) -> f32 {
     let mut n = (p.x as i32 as u32).wrapping_mul(0x8da6_b343)
         ^ (p.y as i32 as u32).wrapping_mul(0xd816_3841)

@@ -8,7 +8,7 @@ use crate::subject::{ASPECT, View};
 use demo::camera::Camera;
 use tools::Result;
 
-/// A view for each camera in the scene of a file; none where the format has no cameras.
+/// A view for each camera in a file's scene; none if the format has no cameras.
 pub fn read(path: &Path) -> Result<Vec<View>> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj")) {
         return Ok(Vec::new());

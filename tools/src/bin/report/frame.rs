@@ -1,4 +1,4 @@
-//! Draws frames of a view by one setting, and asks for what is tested.
+//! Draws frames of a view with one setting, and runs the queries.
 
 use std::time::Instant;
 
@@ -13,18 +13,18 @@ use demo::camera::in_view;
 use demo::scene::Object;
 use tools::Result;
 
-/// An occluder as the library reads it fastest: x, y, z and nothing, 16 bytes a vertex.
+/// An occluder in the form that the library reads fastest: x, y, z and padding, 16 bytes per vertex.
 pub struct Occluder {
     vertices: Vec<[f32; 4]>,
     pub indices: Vec<u32>,
     matrix: Matrix,
     options: DrawOptions,
-    /// The least w of its box, and the greatest.
+    /// The minimum and maximum w of its box.
     nearest: f32,
     farthest: f32,
 }
 
-/// Of [`Occluder::vertices`].
+/// The layout of [`Occluder::vertices`].
 pub const LAYOUT: ModelSpaceLayout = ModelSpaceLayout::XYZ_PADDED;
 
 impl Occluder {
@@ -58,7 +58,7 @@ impl Occluder {
     }
 }
 
-/// The occluders in view, in the order of drawing.
+/// The occluders in view, in drawing order.
 pub fn occluders(subject: &Subject, view: &View, order: Order) -> Vec<Occluder> {
     let in_view = |o: &&Object| o.occluder && in_view(o.lo, o.hi, &view.clip);
     let mut all: Vec<Occluder> = subject.objects.iter().filter(in_view).map(|o| Occluder::new(o, view)).collect();
@@ -70,9 +70,10 @@ pub fn occluders(subject: &Subject, view: &View, order: Order) -> Vec<Occluder> 
     all
 }
 
-/// Deals occluders to buffers, in their order. What reaches over a wide range of depth cannot be sorted among what stands
-/// in it, so that the article on merging has a buffer of its own for terrain: the first buffer gets those that reach over
-/// the least, the last those that reach over the most, the same number of triangles each.
+/// Distributes occluders over buffers, preserving their order. An occluder that spans a wide range of depth cannot be
+/// sorted among the objects within that range, which is why the article on merging has a separate buffer for terrain:
+/// here the first buffer gets the occluders with the smallest depth range, the last those with the largest, with the
+/// same number of triangles in each.
 fn deal(occluders: &[Occluder], buffers: usize) -> Vec<Vec<&Occluder>> {
     let reach = |o: &Occluder| o.farthest / o.nearest;
     let mut by_reach: Vec<usize> = (0..occluders.len()).collect();
@@ -87,11 +88,11 @@ fn deal(occluders: &[Occluder], buffers: usize) -> Vec<Vec<&Occluder>> {
     (0..buffers).map(|buffer| of(buffer).collect()).collect()
 }
 
-/// What draws frames by a setting.
+/// Draws frames with a setting.
 pub struct Frames<'a> {
     lists: Vec<Vec<&'a Occluder>>,
     buffers: Vec<MaskedOcclusionCulling>,
-    /// Where one buffer is drawn by several threads.
+    /// The pool, if several threads draw into one buffer.
     pool: Option<CullingThreadpool>,
     threads: usize,
 }
@@ -106,7 +107,7 @@ impl<'a> Frames<'a> {
             Ok(moc)
         };
         let pool = (setting.threads > 1 && setting.buffers == 1).then(|| -> Result<_> {
-            // Who flushes draws, too.
+            // The flushing thread draws, too.
             let settings = ThreadpoolSettings::default().with_threads(setting.threads - 1);
             let pool = CullingThreadpool::new(settings.with_bins(4, 16).with_max_jobs(64))?;
             pool.wake_threads();
@@ -120,7 +121,7 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Clears, draws, merges; the seconds that took.
+    /// Clears, draws, merges; returns the seconds taken.
     pub fn draw(&mut self) -> Result<f64> {
         if let Some(pool) = &self.pool {
             pool.set_buffer(self.buffers.pop().ok_or("the pool still has the buffer")?);
@@ -156,7 +157,8 @@ impl<'a> Frames<'a> {
         Ok(start.elapsed().as_secs_f64())
     }
 
-    /// Asks for every rectangle: which are hidden, and the seconds that took. Those without a rectangle may be seen.
+    /// Tests every rectangle; returns which are hidden, and the seconds taken. Objects without a rectangle may be
+    /// visible.
     pub fn test(&self, rectangles: &[Rectangle], hidden: &mut Vec<bool>) -> Result<f64> {
         let moc = self.result();
         hidden.clear();
@@ -170,7 +172,7 @@ impl<'a> Frames<'a> {
         Ok(start.elapsed().as_secs_f64())
     }
 
-    /// The buffer with all of it.
+    /// The buffer with the complete frame.
     pub fn result(&self) -> &MaskedOcclusionCulling {
         &self.buffers[0]
     }
@@ -181,7 +183,7 @@ fn draw_list(moc: &mut MaskedOcclusionCulling, list: &[&Occluder]) -> Result<(),
     list.iter().try_for_each(|o| o.draw(moc))
 }
 
-/// Is a rectangle at w hidden, and not only out of view?
+/// Whether a rectangle at w is hidden, and not only out of view.
 pub fn is_hidden(moc: &MaskedOcclusionCulling, [x_min, y_min, x_max, y_max, w]: [f32; 5]) -> bool {
     moc.test_rect(x_min, y_min, x_max, y_max, w) == CullingResult::Occluded
 }

@@ -1,5 +1,6 @@
-//! A generated hall as old buildings have it: two storeys of columns and arches around a long court, vaults, curtains that hang
-//! in the openings, plants in tubs. Much lies behind little: the case in which it matters what a buffer forgets.
+//! A generated hall in the style of old buildings: two storeys of columns and arches around a long court, vaults,
+//! curtains hanging in the openings, plants in tubs. Much of it is behind small occluders, where it matters what a
+//! buffer forgets.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,14 +8,14 @@ use glam::{Vec2, Vec3, vec3};
 
 use demo::scene::{Mesh, Scene};
 
-/// Bays along the court, each so long, and how far out the columns and the walls stand.
+/// Number of bays along the court, the length of each, and the distance of the columns and the walls from the middle.
 const BAYS: i32 = 14;
 const BAY: f32 = 4.0;
 const COLUMNS: f32 = 5.0;
 const WALL: f32 = 9.0;
 const STOREY: f32 = 6.0;
 
-/// Where it is seen from, and what is looked at: along the court, along an aisle, from the gallery across.
+/// Camera positions and targets: along the court, along an aisle, from the gallery across.
 pub const PLACES: [(Vec3, Vec3); 3] = [
     (vec3(0.5, 1.7, 1.0), vec3(-0.8, 3.5, -40.0)),
     (vec3(7.0, 1.7, 0.5), vec3(5.2, 2.0, -40.0)),
@@ -30,7 +31,7 @@ pub fn generate() -> Scene {
         scene.add(mesh, true, false);
     };
     for storey in 0..3 {
-        // The lowest floor is whole, the others leave the court open.
+        // The lowest floor is complete, the others leave the court open.
         let y = storey as f32 * STOREY;
         let from = if storey == 0 { 0.0 } else { COLUMNS - 0.6 };
         for side in [-1.0, 1.0] {
@@ -66,7 +67,7 @@ pub fn generate() -> Scene {
     scene
 }
 
-/// Base, shaft and capital, an object each.
+/// Base, shaft and capital, each as one object.
 fn column(scene: &mut Scene, foot: Vec3) {
     let mut base = Mesh::default();
     base.tapered(foot + vec3(-0.55, 0.0, -0.55), foot + vec3(0.55, 0.5, 0.55), Vec2::splat(0.1), Vec3::ONE);
@@ -84,7 +85,7 @@ fn column(scene: &mut Scene, foot: Vec3) {
     scene.add(capital, true, false);
 }
 
-/// The wall above a round arch, from one capital in a direction to the next.
+/// The wall above a round arch, from one capital to the next in a direction.
 fn arch(scene: &mut Scene, foot: Vec3, span: Vec3) {
     const STONES: usize = 24;
     let (half, middle) = (span.length() / 2.0 - 0.5, span / 2.0);
@@ -107,7 +108,7 @@ fn arch(scene: &mut Scene, foot: Vec3, span: Vec3) {
     scene.add(mesh, true, false);
 }
 
-/// The ceiling of an aisle's bay, curved in both directions.
+/// The ceiling of a bay of an aisle, curved in both directions.
 fn vault(scene: &mut Scene, foot: Vec3, side: f32) {
     let mesh = sheet(16, 16, |u, v| {
         let bulge = (PI * u).sin() * (PI * v).sin();
@@ -116,7 +117,7 @@ fn vault(scene: &mut Scene, foot: Vec3, side: f32) {
     scene.add(mesh, true, true);
 }
 
-/// Cloth in an opening, in folds.
+/// A curtain in an opening, with folds.
 fn curtain(scene: &mut Scene, foot: Vec3, bay: i32) {
     let low = 1.0 + 0.4 * (bay % 3) as f32;
     let mesh = sheet(40, 16, |u, v| {
@@ -144,7 +145,7 @@ fn plant(scene: &mut Scene, foot: Vec3, seed: u32) {
     scene.add(leaves, false, true);
 }
 
-/// Quads over a surface that `place` gives for two numbers from 0 to 1.
+/// A grid of quads on the surface that `place` defines for two parameters from 0 to 1.
 fn sheet(columns: u32, rows: u32, place: impl Fn(f32, f32) -> Vec3) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {

@@ -1,4 +1,4 @@
-//! Where pixels leak: the buffer claims a depth from which far more may be behind it than really is.
+//! Leaking pixels: the buffer's depth is much farther than the true one.
 
 use glam::Vec3;
 
@@ -8,19 +8,19 @@ use demo::raster::ZBuffer;
 
 const RED: Vec3 = Vec3::new(0.93, 0.13, 0.1);
 
-/// Is a pixel of which the buffer says `stored`, in 1/w, less than half as near as it is?
+/// Whether a pixel's depth in the buffer, `stored` in 1/w, is less than half of the true depth.
 fn leaks(stored: f32, exact: f32) -> bool {
     exact > 0.0 && stored < 0.5 * exact
 }
 
-/// How many of the covered pixels leak. Exact depths are near/w.
+/// Number of covered pixels that leak. Exact depths are near/w.
 pub fn leaking(stored: &[f32], exact: &ZBuffer, near: f32) -> Share {
     let covered = exact.depth.iter().filter(|d| **d > 0.0).count();
     let part = stored.iter().zip(&exact.depth).filter(|(s, e)| leaks(**s, *e / near)).count();
     Share { part, whole: covered }
 }
 
-/// The exact depths in grey, the nearer the brighter, red where the buffer leaks; at a quarter of the size each way.
+/// The exact depths in grey, near is bright, with leaking pixels in red; at a quarter of the width and height.
 pub fn picture(stored: &[f32], exact: &ZBuffer, near: f32) -> Image {
     const STEP: usize = 4;
     let (width, height) = (exact.width / STEP, exact.height / STEP);

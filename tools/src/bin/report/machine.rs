@@ -1,10 +1,10 @@
-//! What a page of figures has to say of where and when they were taken.
+//! When and on what machine the page's figures were measured.
 
 use std::time::SystemTime;
 
 use demo::options::Isa;
 
-/// The processor as the system names it, how many of it there are, and its instruction sets.
+/// The processor as the system names it, the number of processors, and the instruction sets.
 pub fn machine() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find_map(|l| l.strip_prefix("model name")).and_then(|l| l.split_once(':'));
@@ -15,7 +15,7 @@ pub fn machine() -> String {
     format!("{model}, {count} processors, {os} on {arch}; {}", isas.join(", "))
 }
 
-/// The day, as in 2026-11-23 (UTC).
+/// The date, as in 2026-11-23 (UTC).
 pub fn day() -> String {
     let mut time = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     time.truncate("2026-11-23".len());

@@ -1,4 +1,4 @@
-//! Speed against error: measures settings of the library over generated scenes and given files, and writes one page of HTML.
+//! Speed against error: measures settings of the library on generated scenes and given files, and writes one HTML page.
 
 mod args;
 mod baseline;
@@ -40,12 +40,12 @@ use setting::{Extent, ORDERS, Order, RULES, SCREEN, Setting};
 use subject::Subject;
 use survey::Survey;
 
-/// All that goes on the page.
+/// The contents of the page.
 struct Findings {
     surveys: Vec<Survey>,
-    /// For each of them.
+    /// One for each of them.
     baselines: Vec<Vec<Baseline>>,
-    /// What follows the program's name on the command line.
+    /// The command line after the program's name.
     arguments: String,
     settings: usize,
     repeats: u32,
@@ -59,7 +59,7 @@ struct Findings {
     merging: Vec<merging::Row>,
 }
 
-/// Medians of fewer repeats differ too much from run to run to compare settings by them.
+/// Medians of fewer repeats vary too much from run to run for a comparison of settings.
 const ENOUGH: u32 = 5;
 
 fn main() -> ExitCode {
@@ -79,7 +79,7 @@ fn run(args: &Args) -> Result<()> {
         _ => Extent::Usual,
     };
     if let Some(folder) = args.out.parent() {
-        fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     }
     let mut subjects = if args.only_files { Vec::new() } else { Subject::generated() };
     for file in &args.files {
@@ -91,7 +91,7 @@ fn run(args: &Args) -> Result<()> {
         cullers.push(Box::new(scaling::other::Other::load(path, best)?));
     }
     cullers.push(Box::new(baseline::HizCuller::new()));
-    // Before minutes of measuring, not after.
+    // Before minutes of measuring rather than after.
     let complain = |e| format!("cannot write {}: {e}", args.out.display());
     let mut page = File::create(&args.out).map_err(complain)?;
     let found = measure_all(args, extent, &subjects, cullers)?;
@@ -101,7 +101,7 @@ fn run(args: &Args) -> Result<()> {
     match (found.falsely(), found.other_bits()) {
         (0, 0) => Ok(()),
         (falsely, bits) => {
-            Err(format!("{falsely} falsely culled, {bits} buffers with other bits than they should have").into())
+            Err(format!("{falsely} falsely culled, {bits} buffers whose bits differ from what they should be").into())
         }
     }
 }
@@ -166,7 +166,7 @@ fn measure_all(
     Ok(found)
 }
 
-/// The first view, drawn by each rule, and by quick into two buffers.
+/// The first view, drawn with each rule, and with the quick rule into two buffers.
 fn leak_pictures(subject: &Subject) -> Result<Vec<(Image, String)>> {
     let view = &subject.views[0];
     let occluders = frame::occluders(subject, view, Order::Near);
@@ -216,7 +216,7 @@ impl Findings {
         self.surveys.iter().map(|s| s.other_bits).sum()
     }
 
-    /// What is said of too few repeats.
+    /// The warning about too few repeats.
     fn caution(&self) -> Option<String> {
         let times = if self.repeats == 1 { "once".into() } else { format!("{} times", self.repeats) };
         (self.repeats < ENOUGH).then(|| {
@@ -224,7 +224,7 @@ impl Findings {
         })
     }
 
-    /// What is said at the end.
+    /// The closing message.
     fn summary(&self) -> String {
         let mut text: Vec<String> = self.caution().into_iter().collect();
         text.extend([
@@ -249,7 +249,7 @@ impl Findings {
     }
 }
 
-/// Prints. The page is written even when nobody reads what is said.
+/// Prints. Errors are ignored: the page is written even if nobody reads the output.
 fn say(text: &str) {
     let _ = writeln!(io::stdout(), "{text}");
 }

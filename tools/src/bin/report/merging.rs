@@ -1,4 +1,4 @@
-//! What a merge costs beside drawing: table 1 of the article of 2018, for the generated landscape.
+//! The cost of a merge relative to drawing: table 1 of the article of 2018, for the generated landscape.
 
 use crate::setting::RULES;
 use demo::options::Rule;
@@ -7,20 +7,20 @@ use tools::merging::landscape::Landscape;
 use tools::merging::measure::{Measured, measure};
 use tools::merging::truth::Truth;
 
-/// Those of the article.
+/// The sizes in the article.
 const SIZES: [(u32, u32); 3] = [(640, 400), (1280, 800), (1920, 1080)];
 const BOXES: u32 = 8_000;
 
 pub struct Row {
     pub size: (u32, u32),
     pub rule: Rule,
-    /// Boxes that are hidden.
+    /// Number of hidden boxes.
     pub hidden: usize,
     pub measured: Measured,
 }
 
 impl Row {
-    /// The time of the merge as a part of that of drawing both buffers, in percent.
+    /// The time of the merge as a percentage of the time of drawing both buffers.
     pub fn share(&self) -> f64 {
         100.0 * self.measured.merge / (self.measured.terrain + self.measured.foreground)
     }

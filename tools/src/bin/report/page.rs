@@ -39,13 +39,13 @@ fn plot(svg: String) -> Markup {
     html! { figure.wide { (PreEscaped(svg)) } }
 }
 
-/// As the library's Cargo.toml has it: this package has a number of its own.
+/// The version in the library's Cargo.toml; this package has its own.
 fn library_version() -> &'static str {
     let manifest = include_str!("../../../../Cargo.toml");
     manifest.lines().find_map(|line| line.strip_prefix("version = ")).map_or("", |version| version.trim_matches('"'))
 }
 
-/// The whole page, which needs no other file.
+/// The whole page, in a single file.
 pub fn write(found: &Findings) -> Result<String> {
     let mut scatters = Vec::new();
     for (survey, baselines) in found.surveys.iter().zip(&found.baselines) {

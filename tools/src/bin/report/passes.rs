@@ -1,8 +1,9 @@
-//! The passes of a frame: table 1 of the HPG 2016 paper, a full-resolution hierarchical z-buffer beside the masked buffer.
+//! The passes of a frame: table 1 of the HPG 2016 paper, comparing a full-resolution hierarchical z-buffer with the
+//! masked buffer.
 //!
-//! The library draws in one go, without lists in memory between the passes. To have its passes apart, vertices are transformed
-//! by `transform_vertices` (Geom), culled and projected into a list by `bin_triangles` with a single bin (Proj), and drawn from it
-//! (Rast); the last column has the frame as an engine draws it, in one go.
+//! The library draws in one pass, without intermediate lists in memory. To time its passes separately, vertices are
+//! transformed with `transform_vertices` (Geom), culled and projected into a list with `bin_triangles` and a single bin
+//! (Proj), and drawn from it (Rast); the last column has the frame as an engine draws it, in one pass.
 
 use std::time::Instant;
 
@@ -24,9 +25,9 @@ pub struct Row {
     pub name: String,
     /// Seconds, medians.
     pub passes: [f64; 6],
-    /// Drawn and tested in one go.
+    /// Drawn and tested in one pass.
     pub frame: f64,
-    /// Objects and boxes that are culled.
+    /// Number of objects and boxes that are culled.
     pub culled: usize,
 }
 
@@ -46,7 +47,7 @@ impl Laps {
     }
 }
 
-/// Each way in turn, again and again, on the first view of a scene, the nearest first.
+/// Measures the ways alternately, repeatedly, on the first view of a scene, nearest first.
 pub fn study(subject: &Subject, repeats: u32) -> Result<Vec<Row>> {
     let view = &subject.views[0];
     let occluders = occluders(subject, view, Order::Near);
@@ -84,7 +85,7 @@ enum Kind {
 struct Way {
     name: &'static str,
     kind: Kind,
-    /// Clip space of every occluder, and the list's memory.
+    /// Clip-space vertices of every occluder, and the list's memory.
     clip: Vec<Vec<[f32; 4]>>,
     list: Vec<f32>,
     times: [Vec<f64>; 7],
@@ -98,14 +99,14 @@ impl Way {
             name,
             kind,
             clip: occluders.iter().map(|o| vec![[0.0; 4]; o.vertices().len()]).collect(),
-            // A triangle that is clipped becomes several.
+            // Clipping may turn a triangle into several.
             list: vec![0.0; 9 * 2 * (triangles + 1000)],
             times: [const { Vec::new() }; 7],
             culled: 0,
         }
     }
 
-    /// The time of each pass, and how many are culled.
+    /// The time of each pass, and the number of culled objects and boxes.
     fn in_passes(&mut self, occluders: &[Occluder], tested: &[Rectangle], view: &View) -> Result<([f64; 6], usize)> {
         let mut t = [0.0; 6];
         let mut laps = Laps(Instant::now());

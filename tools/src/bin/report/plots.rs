@@ -7,7 +7,7 @@ use crate::sizes;
 use demo::options::Rule;
 use tools::Result;
 
-/// Colours that everyone tells apart.
+/// Colours that everybody can distinguish, including the colour-blind.
 const BLUE_OF: RGBColor = RGBColor(0, 90, 181);
 const ORANGE: RGBColor = RGBColor(220, 90, 0);
 const GREEN: RGBColor = RGBColor(0, 140, 90);
@@ -26,7 +26,7 @@ pub fn colour(rule: Rule) -> RGBColor {
     }
 }
 
-/// A drawing as text.
+/// An SVG drawing as text.
 pub fn svg(draw: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Result<()>) -> Result<String> {
     let mut text = String::new();
     {
@@ -38,7 +38,7 @@ pub fn svg(draw: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Res
     Ok(text)
 }
 
-/// Nanoseconds against the size of triangles, both logarithmic: a triangle's, and a pixel's.
+/// Nanoseconds per triangle and per pixel against triangle size, on logarithmic axes.
 pub fn triangle_sizes(rows: &[sizes::Row], libraries: &[String], per_pixel: bool) -> Result<String> {
     let value = |row: &sizes::Row, i| if per_pixel { row.ns_per_pixel(i) } else { row.ns_per_triangle(i) };
     let all = || rows.iter().flat_map(|r| (0..libraries.len()).map(move |i| value(r, i)));
@@ -84,7 +84,7 @@ pub fn triangle_sizes(rows: &[sizes::Row], libraries: &[String], per_pixel: bool
     })
 }
 
-/// A number at a logarithmic axis: 1, 2, 5, 10, ...; nothing at those between, which would run into each other.
+/// A label on a logarithmic axis: 1, 2, 5, 10, ...; empty for values in between, whose labels would overlap.
 fn few(value: f64) -> String {
     let leading = (value / 10f64.powf((value * 1.0001).log10().floor())).round();
     if [1.0, 2.0, 5.0].contains(&leading) { format!("{}", (value * 1e4).round() / 1e4) } else { String::new() }

@@ -1,4 +1,4 @@
-//! The plot that the report is about: speed against the share of hidden objects that are culled.
+//! The central plot of the report: speed against the percentage of hidden objects that are culled.
 
 use plotters::prelude::*;
 
@@ -14,10 +14,10 @@ pub struct Baseline {
     pub percent: f64,
 }
 
-/// How wide the legend is.
+/// Width of the legend.
 const LEGEND: u32 = 230;
 
-/// A setting's place, and how it is drawn.
+/// The position and style of a setting's point.
 #[derive(Clone, Copy)]
 struct Dot {
     at: (f64, f64),
@@ -35,7 +35,7 @@ enum Shape {
 }
 
 impl Shape {
-    /// That of an order; what culls no more and no less than the best instruction set on one thread is a cross.
+    /// The shape for an order. Other instruction sets and more threads, which cull exactly the same, are crosses.
     fn of(setting: &Setting) -> Self {
         if setting.threads > 1 || setting.isa != best_isa() { Self::Cross } else { setting.order.into() }
     }
@@ -51,7 +51,7 @@ impl From<Order> for Shape {
     }
 }
 
-/// A point a setting. Colour is the rule, shape the order, size the resolution; a hollow point has several buffers.
+/// One point per setting. Colour is the rule, shape the order, size the resolution; hollow points have several buffers.
 pub fn speed_against_error(survey: &Survey, baselines: &[Baseline]) -> Result<String> {
     let mut dots: Vec<Dot> = Vec::new();
     for p in &survey.points {

@@ -1,16 +1,16 @@
-//! The settings: what a user of the library can choose, and what is measured of all the combinations.
+//! The settings: the choices of a user of the library, and which combinations are measured.
 
 use std::fmt;
 
 use demo::options::{Isa, Rule};
 
-/// In which order objects are drawn, by the distance of their boxes.
+/// The order in which objects are drawn, by the distance of their boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Order {
-    /// The nearest first.
+    /// Nearest first.
     Near,
     Random,
-    /// The farthest first.
+    /// Farthest first.
     Far,
 }
 
@@ -19,7 +19,7 @@ pub struct Setting {
     pub rule: Rule,
     pub size: (u32, u32),
     pub order: Order,
-    /// Objects are dealt to so many buffers, which are merged at the end.
+    /// Number of buffers that objects are distributed over, which are merged at the end.
     pub buffers: usize,
     pub isa: Isa,
     pub threads: u32,
@@ -28,11 +28,11 @@ pub struct Setting {
 pub const RULES: [Rule; 4] = [Rule::ThreeLayer, Rule::Quick, Rule::Accurate, Rule::FourLayer];
 pub const ORDERS: [Order; 3] = [Order::Near, Order::Random, Order::Far];
 pub const BUFFERS: [usize; 3] = [1, 2, 4];
-/// The screen: who shows on it is the truth for all settings.
+/// Size of the screen: visibility on it is the reference for all settings.
 pub const SCREEN: (u32, u32) = (1920, 1080);
 const SIZES: [(u32, u32); 4] = [SCREEN, (1280, 720), (640, 360), (320, 180)];
 
-/// How much is measured.
+/// The extent of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     Short,
@@ -41,12 +41,12 @@ pub enum Extent {
 }
 
 impl Setting {
-    /// Is it what most would take: one buffer, one thread, the best instruction set?
+    /// Whether it is the usual choice: one buffer, one thread, the best instruction set.
     pub fn is_plain(&self) -> bool {
         self.buffers == 1 && self.threads == 1 && self.isa == best_isa()
     }
 
-    /// Settings that have to give the same bits as this one share it: instruction sets, and threads with one buffer.
+    /// A key shared by all settings that must give the same bits: instruction sets, and threads with one buffer.
     pub fn bits(&self) -> Self {
         Self { isa: Isa::Scalar, threads: 1, ..*self }
     }
@@ -56,16 +56,16 @@ pub fn best_isa() -> Isa {
     *Isa::available().last().unwrap_or(&Isa::Scalar)
 }
 
-/// 1, 2, 4, ... up to the number of processors, but 2 at least.
+/// 1, 2, 4, ... up to the number of processors, but at least 2.
 fn threads() -> Vec<u32> {
     let most = std::thread::available_parallelism().map_or(2, |n| n.get().max(2)) as u32;
     (0..).map(|n| 1 << n).take_while(|n| *n <= most).collect()
 }
 
-/// What is measured, without repetitions.
+/// The settings to measure, without duplicates.
 ///
-/// Usually the rules with all resolutions, orders and numbers of buffers on one thread; then, on the whole screen, with all
-/// instruction sets, and with threads.
+/// Usually all combinations of rule, resolution, order and number of buffers on one thread; then, at full resolution,
+/// all instruction sets, and several threads.
 pub fn settings(extent: Extent) -> Vec<Setting> {
     let (isa, all_isas) = (best_isa(), Isa::available());
     let mut settings = Vec::new();

@@ -1,4 +1,5 @@
-//! What a triangle costs by its size: figure 11 of the HPG 2016 paper, the masked buffer beside a full-resolution z-buffer.
+//! The cost of a triangle by its size: figure 11 of the HPG 2016 paper, comparing the masked buffer with a
+//! full-resolution z-buffer.
 
 use std::time::Duration;
 
@@ -7,17 +8,17 @@ use tools::scaling::culler::Culler;
 use tools::scaling::measure::measure;
 use tools::scaling::scene::right_triangles;
 
-/// Legs in pixels.
+/// Length of the legs in pixels.
 const LEGS: [u32; 11] = [1, 2, 5, 10, 25, 50, 75, 100, 150, 250, 500];
 /// The paper's number.
 const TRIANGLES: u32 = 32 << 10;
-/// No more pixels than these are drawn in a frame, so that the largest do not take minutes.
+/// Maximum number of pixels per frame, so that the largest triangles do not take minutes.
 const PIXELS: u32 = 400 << 20;
 
 pub struct Row {
     pub leg: u32,
     pub triangles: u32,
-    /// For each library.
+    /// One for each library.
     pub seconds: Vec<f64>,
 }
 

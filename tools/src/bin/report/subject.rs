@@ -1,4 +1,4 @@
-//! What is measured: scenes, each with places that it is seen from, and small boxes strewn over it.
+//! The subjects of the measurement: scenes, each with several views, and small boxes scattered over it.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use tools::rectangle::rectangle;
 
 /// All screens are 16 to 9.
 pub const ASPECT: f32 = 16.0 / 9.0;
-/// How many boxes are strewn over a scene for each view, some of which are out of view.
+/// Number of boxes scattered over a scene for each view; some are out of view.
 const BOXES: usize = 3_000;
-/// Views of a file that names no cameras.
+/// Number of views for a file without cameras.
 const VIEWS: usize = 3;
 
 pub struct Subject {
@@ -26,14 +26,14 @@ pub struct Subject {
     pub views: Vec<View>,
 }
 
-/// A place to look from.
+/// A camera position.
 pub struct View {
     pub clip: Mat4,
     pub near: f32,
 }
 
-/// The rectangle of something that is tested: on the screen, with its least w. Without it nothing is asked, for it reaches before
-/// the near plane.
+/// The rectangle of a tested object on the screen, with its minimum w. Objects that cross the near plane have none, and
+/// are not tested.
 pub type Rectangle = Option<[f32; 5]>;
 
 impl Subject {
@@ -67,7 +67,7 @@ impl Subject {
         ]
     }
 
-    /// The scene in a file: large meshes are split, as the demo does it.
+    /// The scene in a file; large meshes are split, as in the demo.
     pub fn load(path: &Path) -> Result<Self> {
         if path.extension().is_some_and(|e| e == "mocrec") {
             return Err(format!("{}: a recording has no objects to test; `replay` plays it", path.display()).into());
@@ -87,7 +87,8 @@ impl Subject {
         self.objects.iter().map(|o| o.mesh.triangles.len()).sum()
     }
 
-    /// The rectangles of all objects in a view, by object. Those out of view have none either: an engine culls them before.
+    /// The rectangles of all objects in a view, by object. Those out of view have none either: an engine culls them
+    /// beforehand.
     pub fn rectangles(&self, view: &View) -> Vec<Rectangle> {
         let in_view = |o: &Object| in_view(o.lo, o.hi, &view.clip);
         self.objects
@@ -96,7 +97,7 @@ impl Subject {
             .collect()
     }
 
-    /// Boxes of half a percent of the scene's size, anywhere in it and at least in part on the screen.
+    /// Boxes of half a percent of the scene's size, at random positions at least partly on the screen.
     pub fn boxes(&self, view: &View) -> Vec<Rectangle> {
         let (lo, hi) = demo::scene::bounds(self.objects.iter().flat_map(|o| [o.lo, o.hi]));
         let size = (hi - lo).length();
@@ -122,7 +123,7 @@ impl View {
     }
 }
 
-/// The views from which there is most to see and to cull, from different places.
+/// The views with the most to see and to cull, from different positions.
 fn chosen(scene: &Scene) -> Vec<View> {
     let (lo, hi) = scene.bounds();
     let size = (hi - lo).length();

@@ -1,4 +1,4 @@
-//! Measures settings on a scene: time, what is culled of what is hidden, and what should not have been.
+//! Measures settings on a scene: time, how much of the hidden geometry is culled, and false culls.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -11,7 +11,7 @@ use crate::visibility::Visibility;
 use tools::Result;
 use tools::rectangle::hides;
 
-/// A part of a whole.
+/// A fraction, as two counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Share {
     pub part: usize,
@@ -23,7 +23,7 @@ impl Share {
         100.0 * self.part as f64 / self.whole.max(1) as f64
     }
 
-    /// How many of those that are `wanted` are `found`.
+    /// Counts how many of those that are `wanted` are `found`.
     pub fn of(wanted: &[bool], found: impl Iterator<Item = bool>) -> Self {
         let found: Vec<bool> =
             wanted.iter().zip(found).filter(|(wanted, _)| **wanted).map(|(_, found)| found).collect();
@@ -36,21 +36,21 @@ impl Share {
     }
 }
 
-/// What came out for a setting, all views together.
+/// The results of a setting, over all views.
 #[derive(Clone, Debug)]
 pub struct Point {
     pub setting: Setting,
-    /// Sums over the views of the medians, in seconds: clear, draw, merge; then the queries.
+    /// Sums of the medians over the views, in seconds: clear, draw, merge; then the queries.
     pub draw: f64,
     pub query: f64,
-    /// Of what does not show on the screen, the part that is culled.
+    /// The fraction of objects not visible on the screen that is culled.
     pub objects: Share,
     pub boxes: Share,
-    /// Objects and boxes that are culled although they show at the buffer's own resolution: 0 is what is promised.
+    /// Objects and boxes that are culled although they are visible at the buffer's own resolution: guaranteed to be 0.
     pub falsely: usize,
-    /// Objects that are culled and show on the screen, which has more pixels than a small buffer.
+    /// Objects that are culled but visible on the screen, which has more pixels than a small buffer.
     pub on_screen: usize,
-    /// Pixels that claim less than half of the true depth.
+    /// Pixels whose stored depth is less than half of the true depth.
     pub leaks: Share,
 }
 
@@ -60,16 +60,17 @@ impl Point {
     }
 }
 
-/// A scene and all that was found.
+/// A scene and its results.
 pub struct Survey {
     pub name: String,
     pub objects: usize,
     pub triangles: usize,
     pub points: Vec<Point>,
-    /// What an exact z-buffer of the screen culls of the hidden objects and boxes, and its least depth of each 8x4 pixels.
+    /// Hidden objects and boxes culled by an exact z-buffer at screen resolution, and by one reduced to the least depth
+    /// of each 8x4 pixels.
     pub exact: [Share; 2],
     pub ceiling: [Share; 2],
-    /// Groups of settings that have to give the same bits, and those of them that do not.
+    /// The number of groups of settings that must give the same bits, and of those that do not.
     pub same_bits: usize,
     pub other_bits: usize,
 }
@@ -109,7 +110,7 @@ pub fn survey(subject: &Subject, settings: &[Setting], repeats: u32, mut tick: i
             };
             let mut frames = Frames::new(&setting, of_order(setting.order), view.near)?;
             let (mut draws, mut queries, mut hidden) = (Vec::new(), Vec::new(), Vec::new());
-            // The first frame touches memory that the system has not given yet: it is not counted.
+            // The first frame touches memory that the system has not mapped yet: it is not counted.
             for turn in 0..=repeats {
                 let times = (frames.draw()?, frames.test(&all, &mut hidden)?);
                 if turn > 0 {
@@ -161,7 +162,7 @@ impl Point {
     }
 }
 
-/// The middle one, or the higher one of the two in the middle.
+/// The median; the upper one of the two middle values for an even count.
 pub fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

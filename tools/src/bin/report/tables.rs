@@ -9,7 +9,7 @@ use crate::sizes;
 use crate::survey::{Point, Survey};
 use demo::options::Rule;
 
-/// A heading and lines of equally many cells; the first is to the left.
+/// A heading and rows with equally many cells; the first column is left-aligned.
 pub struct Table {
     pub head: Vec<String>,
     pub rows: Vec<Vec<String>>,
@@ -20,7 +20,7 @@ impl Table {
         Self { head: head.into_iter().map(|s| s.to_string()).collect(), rows: Vec::new() }
     }
 
-    /// In columns of equal width.
+    /// As text in aligned columns.
     pub fn text(&self) -> String {
         let lines = || std::iter::once(&self.head).chain(&self.rows);
         let width = |column: usize| lines().map(|l| l[column].chars().count()).max().unwrap_or(0);
@@ -39,13 +39,14 @@ fn percent(value: f64) -> String {
     format!("{value:.1}")
 }
 
-/// The point of a rule that most would take, at the largest resolution that was measured.
+/// The usual setting with a rule, at the highest resolution that was measured.
 fn plain(survey: &Survey, rule: Rule, order: Order) -> Option<&Point> {
     let of_rule = |p: &&Point| p.setting.is_plain() && p.setting.rule == rule && p.setting.order == order;
     survey.points.iter().filter(of_rule).max_by_key(|p| p.setting.size)
 }
 
-/// For each scene and order: what each rule culls of the hidden objects and boxes, and its time over that of quick.
+/// For each scene and order: the percentage of hidden objects and boxes that each rule culls, and its time relative to
+/// the quick rule.
 pub fn rules(surveys: &[Survey]) -> Table {
     let mut table = Table::new(["scene, order", "exact", "8x4 ceiling"]);
     for rule in RULES {
@@ -121,10 +122,10 @@ pub fn points(survey: &Survey) -> Table {
     table
 }
 
-/// For every value of something, the mean over scenes of the time over that of the plain setting with the same rule and order, and
-/// how much more or less it culls.
+/// For every value of a setting, the mean over scenes of its time relative to the usual setting with the same rule and
+/// order, and of the difference in what it culls.
 pub fn effect<K: Ord + Clone>(surveys: &[Survey], what: &str, key: impl Fn(&Setting) -> Option<(K, String)>) -> Table {
-    /// What a value is called, and for each scene and order time, objects, boxes.
+    /// The value's name, and time, objects, boxes for each scene and order.
     type Group = (String, Vec<[f64; 3]>);
     let mut groups: BTreeMap<(K, u8), Group> = BTreeMap::new();
     for survey in surveys {
@@ -155,7 +156,7 @@ pub fn effect<K: Ord + Clone>(surveys: &[Survey], what: &str, key: impl Fn(&Sett
     table
 }
 
-/// Resolution on one thread, one buffer; then buffers, instruction sets, threads on the screen.
+/// Resolution on one thread with one buffer; then buffers, instruction sets, and threads at full resolution.
 pub fn effects(surveys: &[Survey]) -> Vec<Table> {
     let best = best_isa();
     let usual = |s: &Setting| s.isa == best && s.threads == 1;
@@ -175,13 +176,13 @@ pub fn effects(surveys: &[Survey]) -> Vec<Table> {
                 (1, _) => "a pool".into(),
                 (buffers, _) => format!("{buffers} buffers merged"),
             };
-            // A buffer has one thread.
+            // Each buffer has one thread.
             let is_sound = s.buffers == 1 || s.threads as usize <= s.buffers;
             let has_both = is_sound && s.isa == best && s.size == SCREEN && s.buffers <= 2 && s.order != Order::Far;
             has_both.then(|| ((s.buffers, s.threads), format!("{}, {how}", s.threads)))
         }),
     ];
-    // A short run has a single size, and not that of the screen.
+    // A short run has a single size, which is not that of the screen.
     tables.into_iter().filter(|t| !t.rows.is_empty()).collect()
 }
 

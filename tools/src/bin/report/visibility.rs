@@ -1,4 +1,4 @@
-//! What shows and what is hidden in a view, by a z-buffer with a depth for each pixel that shares nothing with the library.
+//! What is visible and hidden in a view, by a full-resolution z-buffer that shares no code with the library.
 
 use crate::subject::{Rectangle, Subject, View};
 use demo::camera::in_view;
@@ -6,26 +6,26 @@ use demo::raster::{ZBuffer, each_pixel};
 use demo::scene::Object;
 use tools::rectangle::hides;
 
-/// Depths may be off by this much before something counts as nearer.
+/// Tolerance of depths before something counts as nearer.
 const ROUNDING: f32 = 1.0 + 1e-5;
-/// By how many pixels triangles are grown for the benefit of rounding: half a step of the vertex grid.
+/// Pixels by which triangles are grown to allow for rounding: half a step of the vertex grid.
 const GROWN: f64 = 1.0 / 512.0;
 
-/// What is true of a view at a resolution.
+/// The ground truth for a view at a resolution.
 pub struct Visibility {
-    /// The occluders' depth of every pixel.
+    /// The depth of the occluders at every pixel.
     pub exact: ZBuffer,
-    /// For each object: has it pixels in view, of which every one lies behind an occluder?
+    /// For each object: whether it has pixels in view, all of them behind an occluder.
     pub hidden_objects: Vec<bool>,
-    /// For each object: does a pixel of it show, whatever is rounded?
+    /// For each object: whether a pixel of it is visible regardless of rounding.
     pub showing_objects: Vec<bool>,
-    /// For each box: does the exact z-buffer hide its rectangle?
+    /// For each box: whether the exact z-buffer hides its rectangle.
     pub hidden_boxes: Vec<bool>,
-    /// For each box: may it be culled, with the benefit of rounding?
+    /// For each box: whether it may be culled, with the benefit of rounding.
     pub may_hide_boxes: Vec<bool>,
 }
 
-/// The two nearest depths of every pixel that are not of the same object.
+/// The two nearest depths of every pixel that belong to different objects.
 struct TwoNearest {
     nearest: Vec<(f32, u32)>,
     second: Vec<f32>,
@@ -44,7 +44,7 @@ impl TwoNearest {
         }
     }
 
-    /// The nearest of all objects but one.
+    /// The nearest depth of all objects except one.
     fn of_others(&self, pixel: usize, id: u32) -> f32 {
         if self.nearest[pixel].1 == id { self.second[pixel] } else { self.nearest[pixel].0 }
     }
@@ -91,7 +91,8 @@ impl Visibility {
         }
     }
 
-    /// The exact z-buffer with one depth for each 8x4 pixels, the least: a ceiling for what can be culled with one depth for each.
+    /// The exact z-buffer reduced to the least depth of each 8x4 pixels: the upper bound for culling with one depth per
+    /// 8x4 pixels.
     pub fn blocks(&self) -> ZBuffer {
         let (width, height) = (self.exact.width.div_ceil(8), self.exact.height.div_ceil(4));
         let mut blocks = ZBuffer::new(width, height);

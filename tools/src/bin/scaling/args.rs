@@ -8,31 +8,31 @@ use clap::Parser;
 use demo::options::isa;
 pub use demo::options::{Isa, Rule};
 
-/// Measures how the time of drawing grows with triangles, pixels and depth, and plots it.
+/// Measures how drawing time grows with triangles, pixels and depth, and plots it.
 #[derive(Debug, Parser)]
 #[command(name = "scaling")]
 pub struct Args {
-    /// A shared object made of scaling/other.cpp and another library, to be measured in turn with this one
+    /// A shared object built from scaling/other.cpp and another library, to be measured alternately with this one
     #[arg(long, value_name = "FILE")]
     pub other: Option<PathBuf>,
 
-    /// How the buffer takes in triangles; the other library has the rule that it was compiled with
+    /// Update rule of the buffer; the other library uses the rule that it was compiled with
     #[arg(long, value_enum, default_value_t = Rule::ThreeLayer)]
     pub rule: Rule,
 
-    /// The highest instruction set that may be used (default: the best that the processor has)
+    /// The highest instruction set that may be used (default: the best of the processor)
     #[arg(long, value_name = "ISA", value_parser = isa)]
     pub isa: Option<Isa>,
 
-    /// How long a point may be measured, all libraries and repeats together
+    /// Time limit for a point, all libraries and repeats together
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds, allow_negative_numbers = true)]
     pub seconds: Duration,
 
-    /// Leaves out terrains of more triangles than this; ten million take 200 MB of memory
+    /// Skips terrains of more triangles than this; ten million take 200 MB of memory
     #[arg(long, value_name = "TRIANGLES", default_value_t = 10_000_000)]
     pub most: u32,
 
-    /// Where scaling.csv and the plots are written
+    /// Folder for scaling.csv and the plots
     #[arg(long, value_name = "DIR", default_value = "docs/scaling")]
     pub out: PathBuf,
 }

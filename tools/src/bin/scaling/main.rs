@@ -1,5 +1,5 @@
-//! Measures how the time of drawing grows: with triangles, with pixels, and with sheets one behind the other. Another
-//! library with the same C++ class can be measured beside this one; docs/benchmarking.md says how.
+//! Measures how drawing time grows: with triangles, with pixels, and with sheets one behind another. Another library
+//! with the same C++ class can be measured alongside; docs/benchmarking.md explains how.
 
 mod args;
 
@@ -36,7 +36,7 @@ fn run(args: &Args) -> Result<()> {
         cullers.push(Box::new(Other::load(path, isa)?));
     }
     let libraries: Vec<String> = cullers.iter().map(|c| c.name()).collect();
-    // Before minutes of measuring, not after.
+    // Before minutes of measuring rather than after.
     fs::create_dir_all(&args.out).map_err(|e| format!("cannot make {}: {e}", args.out.display()))?;
 
     let jobs = job::jobs(args.most);
@@ -63,7 +63,7 @@ fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Prints a line above the bar. The files are written even when nobody reads what is said.
+/// Prints a line above the progress bar. Errors are ignored: the files are written even if nobody reads the output.
 fn say(bar: &ProgressBar, line: &str) {
     bar.suspend(|| {
         let _ = writeln!(io::stdout(), "{line}");

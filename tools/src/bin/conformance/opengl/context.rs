@@ -1,4 +1,4 @@
-//! An OpenGL context on a device of EGL's, without a window or a surface.
+//! An OpenGL context on an EGL device, without a window or a surface.
 
 use std::error::Error;
 use std::ffi::c_void;
@@ -9,7 +9,7 @@ type Egl = egl::DynamicInstance<egl::EGL1_5>;
 
 /// EGL_PLATFORM_DEVICE_EXT
 const DEVICES: egl::Enum = 0x313F;
-/// eglQueryDevicesEXT: room for devices, where they go, how many there are.
+/// eglQueryDevicesEXT: capacity, array of devices, their number.
 type QueryDevices = unsafe extern "system" fn(egl::Int, *mut *mut c_void, *mut egl::Int) -> egl::Boolean;
 
 /// A context that is current on this thread.
@@ -18,31 +18,31 @@ pub struct Context {
     display: egl::Display,
     context: egl::Context,
     pub gl: glow::Context,
-    /// glLogicOp, which glow leaves out since OpenGL ES has none.
+    /// glLogicOp, which glow omits because OpenGL ES does not have it.
     pub logic_op: unsafe extern "system" fn(u32),
     pub name: String,
 }
 
 impl Context {
-    /// The device whose renderer's name has `part` in it; without a part a graphics card rather than software.
+    /// The device whose renderer's name contains `part`; without `part`, a graphics card in preference to software.
     pub fn open(part: Option<&str>) -> Result<Self, Box<dyn Error>> {
         let mut seen = Vec::new();
         for index in 0.. {
             match Self::on_device(index) {
                 Ok(None) => break,
                 Ok(Some(context)) => seen.push((index, context.name.to_lowercase())),
-                // Cards without a driver are devices, too.
+                // Cards without a driver are listed as devices, too.
                 Err(why) => seen.push((index, why.to_string())),
             }
         }
         let wanted = |name: &str| name.contains("opengl") && part.is_none_or(|p| name.contains(&p.to_lowercase()));
         let software = |name: &str| ["llvmpipe", "softpipe", "swrast"].iter().any(|s| name.contains(s));
         let best = seen.iter().filter(|(_, name)| wanted(name)).min_by_key(|(_, name)| software(name));
-        let &(index, _) = best.ok_or_else(|| format!("no OpenGL device that was asked for; there are: {seen:?}"))?;
+        let &(index, _) = best.ok_or_else(|| format!("no matching OpenGL device; available: {seen:?}"))?;
         Self::on_device(index)?.ok_or_else(|| "the device is gone".into())
     }
 
-    /// A context on the device of that number, if there are so many.
+    /// A context on the device with that number, if it exists.
     fn on_device(index: usize) -> Result<Option<Self>, Box<dyn Error>> {
         // SAFETY: the system's libEGL is what its name says.
         let egl = unsafe { Egl::load_required()? };
@@ -51,7 +51,7 @@ impl Context {
         let query: QueryDevices = unsafe { std::mem::transmute(query) };
         let mut devices = [std::ptr::null_mut(); 64];
         let mut count = 0;
-        // SAFETY: there is room for as many as is said.
+        // SAFETY: there is room for as many devices as stated.
         if unsafe { query(devices.len() as egl::Int, devices.as_mut_ptr(), &mut count) } != egl::TRUE {
             return Err("EGL does not list its devices".into());
         }
@@ -95,7 +95,8 @@ fn describe(gl: &glow::Context) -> String {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // Nothing can be done about what fails here. The display stays, since others of this process may share it.
+        // Failures here cannot be handled. The display is not terminated, because other code of this process may share
+        // it.
         let _ = self.egl.make_current(self.display, None, None, None);
         let _ = self.egl.destroy_context(self.display, self.context);
     }

@@ -1,5 +1,5 @@
-//! OpenGL: a framebuffer object under the default clip control, whose origin is the lower left. Clip space has y up, and
-//! row 0 of what is read is the lowest.
+//! OpenGL: a framebuffer object under the default clip control, whose origin is at the lower left. Clip space has y up,
+//! and row 0 of the pixels read back is the lowest.
 
 mod context;
 
@@ -116,7 +116,7 @@ impl Driver for OpenGl {
         let gl = &self.context.gl;
         let (width, height) = (view.width as i32, view.height as i32);
         let (x, y) = view.corner();
-        // SAFETY: the context is current; what is deleted is this structure's own.
+        // SAFETY: the context is current; only this structure's own objects are deleted.
         let status = unsafe {
             if let Some(old) = self.target.take() {
                 gl.delete_renderbuffer(old);

@@ -1,13 +1,13 @@
-//! The instance, the physical device that was asked for, and a queue on it.
+//! The instance, the requested physical device, and a queue on it.
 
 use std::error::Error;
 use std::ffi::CStr;
 
 use ash::{Device, Entry, Instance, vk};
 
-/// A device with one queue that draws.
+/// A device with one graphics queue.
 pub struct Gpu {
-    /// The loader's library, which has to outlive what came from it.
+    /// The loader's library, which must outlive everything created through it.
     _entry: Entry,
     instance: Instance,
     physical: vk::PhysicalDevice,
@@ -19,7 +19,7 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// The device whose name has `part` in it; without a part a graphics card rather than software.
+    /// The device whose name contains `part`; without `part`, a graphics card in preference to software.
     pub fn open(part: Option<&str>) -> Result<Self, Box<dyn Error>> {
         // SAFETY: the Vulkan loader of the system is what its name says, and may be initialised.
         let entry = unsafe { Entry::load()? };
@@ -32,7 +32,7 @@ impl Gpu {
             // SAFETY: the queue family is one of this device.
             Ok((physical, family)) => unsafe { Self::new(entry, instance, physical, family) },
             Err(why) => {
-                // SAFETY: nothing was made from it.
+                // SAFETY: nothing was created from it.
                 unsafe { instance.destroy_instance(None) };
                 Err(why)
             }
@@ -50,7 +50,7 @@ impl Gpu {
         let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
         let features = vk::PhysicalDeviceFeatures::default().logic_op(true);
         let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&features);
-        // SAFETY: the structures outlive the calls; the feature was asked for in `choose`.
+        // SAFETY: the structures outlive the calls; `choose` checked for the feature.
         unsafe {
             let device = instance.create_device(physical, &info, None)?;
             let queue = device.get_device_queue(family, 0);
@@ -60,7 +60,7 @@ impl Gpu {
         }
     }
 
-    /// A kind of memory that is one of `allowed` and has the first of `wishes` that can be had.
+    /// A memory type that is among `allowed` and has the first of `wishes` that is available.
     pub fn memory_type(&self, allowed: u32, wishes: &[vk::MemoryPropertyFlags]) -> Result<u32, Box<dyn Error>> {
         // SAFETY: the physical device is one of this instance.
         let memory = unsafe { self.instance.get_physical_device_memory_properties(self.physical) };
@@ -75,7 +75,7 @@ impl Gpu {
 
 impl Drop for Gpu {
     fn drop(&mut self) {
-        // SAFETY: what was made from the device holds a reference to this structure, and is gone.
+        // SAFETY: everything created from the device holds a reference to this structure, and is gone.
         unsafe {
             self.device.destroy_device(None);
             self.instance.destroy_instance(None);
@@ -84,7 +84,7 @@ impl Drop for Gpu {
 }
 
 fn text(name: &[std::ffi::c_char]) -> String {
-    // SAFETY: ash's arrays of characters are as long as the specification has them, and end with a zero.
+    // SAFETY: ash's character arrays have the length in the specification, and are NUL-terminated.
     unsafe { CStr::from_ptr(name.as_ptr()) }.to_string_lossy().into_owned()
 }
 
@@ -92,7 +92,7 @@ fn text(name: &[std::ffi::c_char]) -> String {
 fn describe(instance: &Instance, physical: vk::PhysicalDevice) -> String {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut all = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
-    // SAFETY: the physical device is one of this instance. A device that does not know about drivers leaves zeros.
+    // SAFETY: the physical device is one of this instance. A device without driver properties leaves zeros.
     unsafe { instance.get_physical_device_properties2(physical, &mut all) };
     let version = all.properties.api_version;
     let name = text(&all.properties.device_name);
@@ -126,5 +126,5 @@ fn choose(instance: &Instance, part: Option<&str>) -> Result<(vk::PhysicalDevice
     }
     let best = found.into_iter().min_by_key(|f| f.0);
     best.map(|(_, physical, family)| (physical, family))
-        .ok_or_else(|| format!("no Vulkan device that was asked for and fits; there are: {seen:?}").into())
+        .ok_or_else(|| format!("no matching Vulkan device; available: {seen:?}").into())
 }

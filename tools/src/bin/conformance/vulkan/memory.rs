@@ -1,4 +1,4 @@
-//! Buffers and images, each with memory of its own.
+//! Buffers and images, each with its own memory.
 
 use std::error::Error;
 use std::rc::Rc;
@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::device::Gpu;
 
-/// A buffer that the processor sees all the time.
+/// A buffer that stays mapped.
 pub struct Buffer {
     gpu: Rc<Gpu>,
     pub buffer: vk::Buffer,
@@ -35,12 +35,12 @@ impl Buffer {
         }
     }
 
-    /// What is in it.
+    /// Its contents.
     ///
     /// # Safety
     /// The device is not writing to it, and will not as long as the slice lives.
     pub unsafe fn bytes(&self) -> &[u8] {
-        // SAFETY: so much was mapped, and stays so until the buffer is dropped.
+        // SAFETY: this many bytes are mapped, and stay mapped until the buffer is dropped.
         unsafe { std::slice::from_raw_parts(self.mapped, self.size) }
     }
 
@@ -57,7 +57,7 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        // SAFETY: whoever dropped it has waited for the device.
+        // SAFETY: the owner has waited for the device before dropping it.
         unsafe {
             self.gpu.device.destroy_buffer(self.buffer, None);
             self.gpu.device.free_memory(self.memory, None);
@@ -65,7 +65,7 @@ impl Drop for Buffer {
     }
 }
 
-/// An image to draw into, and the view of it.
+/// An image to draw into, and its view.
 pub struct Image {
     gpu: Rc<Gpu>,
     pub image: vk::Image,
@@ -112,7 +112,7 @@ impl Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
-        // SAFETY: whoever dropped it has waited for the device.
+        // SAFETY: the owner has waited for the device before dropping it.
         unsafe {
             self.gpu.device.destroy_image_view(self.view, None);
             self.gpu.device.destroy_image(self.image, None);

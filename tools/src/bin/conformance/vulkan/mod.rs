@@ -16,7 +16,7 @@ use device::Gpu;
 use pipeline::Pipeline;
 use target::Target;
 
-/// Dropped in the order of the fields: what was made from the device first.
+/// Dropped in the order of the fields: objects created from the device first.
 pub struct Vulkan {
     target: Option<Target>,
     pipeline: Pipeline,
@@ -46,7 +46,7 @@ impl Driver for Vulkan {
 
     fn most_side(&self) -> u32 {
         let limits = &self.gpu.limits;
-        // The viewport reaches half its side beyond the screen.
+        // The viewport extends beyond the screen by half its side.
         let beyond = limits.viewport_bounds_range[1].min(-limits.viewport_bounds_range[0]) as u32;
         let [width, height] = limits.max_viewport_dimensions;
         width.min(height).min(beyond).min(limits.max_framebuffer_width).min(limits.max_framebuffer_height)

@@ -1,4 +1,4 @@
-//! The pipeline: positions as they are, no culling, no depth, an exclusive or into an integer target.
+//! The pipeline: positions are passed through, no culling, no depth, exclusive-or into an integer target.
 
 use std::error::Error;
 
@@ -6,7 +6,7 @@ use ash::{Device, vk};
 use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Four unsigned words a pixel; every device can draw into it.
+/// Four unsigned words per pixel; every device supports it as a render target.
 pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_UINT;
 
 pub struct Pipeline {
@@ -33,7 +33,7 @@ impl Pipeline {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
-        // SAFETY: the device outlives the pipeline, and nothing that uses it is being executed.
+        // SAFETY: the device outlives the pipeline, and no commands that use it are executing.
         unsafe {
             self.device.destroy_pipeline(self.pipeline, None);
             self.device.destroy_pipeline_layout(self.layout, None);
@@ -46,12 +46,12 @@ fn spirv() -> Result<Vec<u32>, Box<dyn Error>> {
     let source = include_str!("shader.wgsl");
     let module = naga::front::wgsl::parse_str(source).map_err(|why| why.emit_to_string(source))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module)?;
-    // Without its default flags, one of which turns y.
+    // Without naga's default flags, one of which flips y.
     let options = spv::Options { flags: spv::WriterFlags::empty(), ..spv::Options::default() };
     Ok(spv::write_vec(&module, &info, &options, None)?)
 }
 
-/// Clears the target, and leaves it to be copied from.
+/// Clears the target, and leaves it in a layout to be copied from.
 ///
 /// # Safety
 /// The device is alive.
@@ -120,7 +120,7 @@ unsafe fn pipeline(
         .dynamic_state(&dynamic)
         .layout(layout)
         .render_pass(pass);
-    // SAFETY: the structures outlive the call, the handles are the caller's word.
+    // SAFETY: the structures outlive the call; the handles are valid by the caller's contract.
     unsafe { device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) }
         .map(|made| made[0])
         .map_err(|(_, why)| why)

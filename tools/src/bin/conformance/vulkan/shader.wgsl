@@ -1,4 +1,4 @@
-// Passes positions through, and writes the bit of the triangle that a pixel is covered by.
+// Passes positions through, and writes the bit of the triangle that covers the pixel.
 
 struct Corner {
     @builtin(position) position: vec4<f32>,

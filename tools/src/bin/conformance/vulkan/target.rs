@@ -1,4 +1,4 @@
-//! What one screen needs: the image, the buffer that it is copied to, and the commands, recorded once.
+//! The resources of one screen: the image, the buffer that it is copied to, and the commands, recorded once.
 
 use std::error::Error;
 use std::rc::Rc;
@@ -21,7 +21,7 @@ pub struct Target {
     pool: vk::CommandPool,
     commands: vk::CommandBuffer,
     fence: vk::Fence,
-    /// Whether the fence is still to be waited for.
+    /// Whether the fence has yet to be waited for.
     under_way: bool,
 }
 
@@ -119,7 +119,7 @@ impl Target {
         self.wait()?;
         let commands = [self.commands];
         let work = vk::SubmitInfo::default().command_buffers(&commands);
-        // SAFETY: what was submitted before is done, so that nobody reads the vertices; the handles are this structure's.
+        // SAFETY: the previous submission is complete, so nobody reads the vertices; the handles are this structure's.
         unsafe {
             self.vertices.write(vertices);
             self.gpu.device.queue_submit(self.gpu.queue, &[work], self.fence)?;
@@ -130,7 +130,7 @@ impl Target {
 
     pub fn read(&mut self) -> Result<&[u8], vk::Result> {
         self.wait()?;
-        // SAFETY: the device is done, and drawing again takes this structure for itself.
+        // SAFETY: the device has finished, and drawing again needs exclusive access to this structure.
         Ok(unsafe { self.pixels.bytes() })
     }
 
@@ -149,9 +149,9 @@ impl Target {
 
 impl Drop for Target {
     fn drop(&mut self) {
-        // SAFETY: the device is waited for, so that nothing of it is in use.
+        // SAFETY: the device was waited for, so none of this is in use.
         unsafe {
-            // A device that is lost uses nothing, either.
+            // A lost device uses nothing, either.
             let _ = self.gpu.device.device_wait_idle();
             self.gpu.device.destroy_fence(self.fence, None);
             self.gpu.device.destroy_command_pool(self.pool, None);

@@ -16,7 +16,7 @@ impl Avx2 {
     }
 }
 
-/// For each mask, the lanes that it keeps, first to last.
+/// For each mask, the indices of its lanes, in order.
 static COMPRESS: [[u8; 8]; 256] = {
     let mut table = [[0; 8]; 256];
     let mut mask = 0;
@@ -34,7 +34,7 @@ static COMPRESS: [[u8; 8]; 256] = {
     table
 };
 
-/// Four registers of two rows of four words each to the columns, or back.
+/// Transposes four registers of two rows of four words each, in either direction.
 ///
 /// # Safety
 /// The processor has AVX2.
@@ -130,7 +130,7 @@ impl Lanes for Avx2 {
             let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(COMPRESS[keep as usize].as_ptr().cast()));
             _mm256_storeu_si256(p.cast(), _mm256_permutevar8x32_epi32(x, order));
         };
-        // What is outside becomes 0, which raises nothing: no masked store is needed, and AMD's are slow.
+        // Depths outside become 0, which never passes the test: no masked store is needed, which is slow on AMD.
         raise(p: *mut f32, outside: __m256i, depth: __m256) = {
             let within = _mm256_andnot_ps(_mm256_castsi256_ps(_mm256_srai_epi32::<31>(outside)), depth);
             _mm256_store_ps(p, _mm256_max_ps(within, _mm256_load_ps(p)));

@@ -16,7 +16,7 @@ impl Avx512 {
     }
 }
 
-/// Four registers of four rows of four words each to the columns, or back.
+/// Transposes four registers of four rows of four words each, in either direction.
 ///
 /// # Safety
 /// The processor has AVX-512 F.
@@ -112,7 +112,7 @@ impl Lanes for Avx512 {
         load_i(p: *const i32) -> __m512i = _mm512_loadu_si512(p.cast());
         store(p: *mut f32, x: __m512) = _mm512_storeu_ps(p, x);
         store_i(p: *mut i32, x: __m512i) = _mm512_storeu_si512(p.cast(), x);
-        // Not the instruction that compresses to memory: AMD's takes dozens of cycles.
+        // Not the instruction that compresses to memory, which takes dozens of cycles on AMD.
         compress(p: *mut i32, keep: u32, x: __m512i) =
             _mm512_storeu_si512(p.cast(), _mm512_maskz_compress_epi32(keep as __mmask16, x));
         // The whole block is stored: a masked store stalls when the same block is read again soon.

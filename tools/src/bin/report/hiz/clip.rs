@@ -1,14 +1,14 @@
-//! Triangles that reach before the near plane or beyond the guard band: cut there, one by one, in doubles.
+//! Triangles that cross the near plane or the guard band: clipped one by one, in doubles.
 
 use masked_occlusion_culling::BackfaceWinding;
 
 use super::list::TriangleList;
 use super::screen::Screen;
 
-/// A triangle and a corner for each of five planes.
+/// A triangle, and one more corner for each of five planes.
 const CORNERS: usize = 8;
 
-/// Clips a triangle, and adds what is left of it and may be drawn to the list.
+/// Clips a triangle, and adds the remaining triangles that may be drawn to the list.
 #[cold]
 #[inline(never)]
 pub fn triangle(screen: &Screen, winding: BackfaceWinding, corners: [[f32; 4]; 3], list: &mut TriangleList) {
@@ -17,7 +17,7 @@ pub fn triangle(screen: &Screen, winding: BackfaceWinding, corners: [[f32; 4]; 3
         return;
     }
     let [across, down] = [0, 1].map(|axis| screen.guard_factor(axis));
-    // Inside of a plane where its product with (x, y, w, 1) is not negative.
+    // A point is inside a plane if the plane's dot product with (x, y, w, 1) is not negative.
     let planes = [
         [0.0, 0.0, 1.0, -f64::from(screen.near.max(f32::MIN_POSITIVE))],
         [1.0, 0.0, across, 0.0],
@@ -54,7 +54,7 @@ pub fn triangle(screen: &Screen, winding: BackfaceWinding, corners: [[f32; 4]; 3
     }
 }
 
-/// Adds a triangle if it faces the eye and there is a pixel's centre in the box around it.
+/// Adds a triangle if it is front-facing and its bounds contain a pixel centre.
 fn push(screen: &Screen, winding: BackfaceWinding, corners: [([i32; 2], f32); 3], list: &mut TriangleList) {
     let [a, b, c] = corners.map(|(at, _)| at.map(i64::from));
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

@@ -1,5 +1,6 @@
-//! Triangles: fetch the corners, drop what faces away, lies off the screen or holds no pixel's centre, and put the rest into a
-//! list. As many at a time as there are lanes; the few that have to be clipped go one by one.
+//! Triangle culling: fetches the corners, drops triangles that are back-facing, off screen or without a pixel centre in
+//! their bounds, and puts the rest into a list. One triangle per lane at a time; the few that have to be clipped are
+//! processed one by one.
 
 use masked_occlusion_culling::BackfaceWinding;
 
@@ -9,7 +10,7 @@ use super::list::TriangleList;
 use super::screen::{Screen, pixels};
 use super::vertices::{CLIP, PLANES};
 
-/// Triangles of projected vertices into a list.
+/// Puts triangles of projected vertices into a list.
 pub struct Cull<'a> {
     pub screen: Screen,
     pub winding: BackfaceWinding,
@@ -42,7 +43,7 @@ impl Pass for Cull<'_> {
 }
 
 impl Cull<'_> {
-    /// The first `n` of as many triangles as there are lanes.
+    /// Processes the first `n` lanes of a vector of triangles.
     #[inline(always)]
     fn some<L: Lanes>(&mut self, s: L, indices: &[u32], n: usize) {
         assert!(indices.len() >= 3 * L::N);
@@ -62,7 +63,7 @@ impl Cull<'_> {
         let regular = s.bits(s.eq_i(s.and_i(in_any, s.i(CLIP)), s.i(0)));
 
         let area = s.cross(s.sub_i(x1, x0), s.sub_i(y2, y0), s.sub_i(y1, y0), s.sub_i(x2, x0));
-        // Counter-clockwise, as seen, is negative where rows run down.
+        // Counter-clockwise triangles have negative area because rows run down.
         let (negative, positive) = (s.lt(area, s.f(0.0)), s.lt(s.f(0.0), area));
         let front = match self.winding {
             BackfaceWinding::Clockwise => s.bits(negative),
@@ -76,14 +77,14 @@ impl Cull<'_> {
 
         let keep = in_view & regular & front & !empty;
         if keep != 0 {
-            // Positive areas from here on.
+            // Areas are positive from here on.
             let order = |b, c| (s.select_i(negative, c, b), s.select_i(negative, b, c));
             let ((x1, x2), (y1, y2), (z1, z2)) = (order(x1, x2), order(y1, y2), order(z1, z2));
             let corners = [[x0, y0, z0], [x1, y1, z1], [x2, y2, z2]];
             for corner in 0..3 {
                 let places = self.list.write_at(corner);
                 for k in 0..3 {
-                    // SAFETY: room was made for all of the call's triangles and a vector besides.
+                    // SAFETY: there is room for all triangles of the call and one more vector.
                     unsafe { s.compress(places[k], keep, corners[corner][k]) };
                 }
             }
@@ -96,7 +97,7 @@ impl Cull<'_> {
             clipped &= clipped - 1;
             let corner = |k: usize| self.clip[indices[3 * t + k] as usize];
             clip::triangle(&self.screen, self.winding, [corner(0), corner(1), corner(2)], self.list);
-            // What was made room for is still to come.
+            // The reserved room is needed for the remaining triangles.
             self.list.reserve(self.indices.len() / 3);
         }
     }

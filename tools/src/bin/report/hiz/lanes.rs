@@ -1,5 +1,5 @@
-//! The vector operations that the passes need. An instruction set is a token of no size that only [`run`] makes, after
-//! asking the processor, so that who holds one may use its instructions.
+//! The vector operations that the passes need. An instruction set is a zero-sized token that only [`run`] creates,
+//! after checking the processor, so that whoever has one may use its instructions.
 
 use masked_occlusion_culling::Implementation;
 
@@ -7,20 +7,20 @@ use super::portable::Portable;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
 
-/// x, y, w and something besides, or what became of them: four words a vertex.
+/// x, y, w and padding, or their projected form: four words per vertex.
 pub type Words = [u32; 4];
 
-/// The most lanes that any instruction set has.
+/// The largest number of lanes of any instruction set.
 pub const MOST: usize = 16;
 
-/// 0, 1, 2, ... as lanes, and as the numbers of vertices that lie side by side.
+/// 0, 1, 2, ... as lanes, and as indices of consecutive vertices.
 pub static COUNT: [u32; MOST] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 pub trait Lanes: Copy {
     const N: usize;
-    /// The pixels that one vector of depths holds are 8 wide and this high, as a power of two.
+    /// A vector of depths is a block of pixels 8 wide and this high, as a power of two.
     const LOG_HEIGHT: u32;
-    /// So many of them are a tile of 8x8 pixels.
+    /// Number of such blocks in a tile of 8x8 pixels.
     const ROWS: usize = 8 >> Self::LOG_HEIGHT;
     /// Floats, integers, and masks for either.
     type F: Copy;
@@ -39,9 +39,9 @@ pub trait Lanes: Copy {
     fn div(self, a: Self::F, b: Self::F) -> Self::F;
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
-    /// a * b + c, in one rounding where the processor can.
+    /// a * b + c, with one rounding if the processor has fused multiply-add.
     fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// To the nearest integer, and back.
+    /// Rounds to the nearest integer, and converts back.
     fn round(self, a: Self::F) -> Self::I;
     fn to_f(self, a: Self::I) -> Self::F;
 
@@ -52,10 +52,10 @@ pub trait Lanes: Copy {
     fn max_i(self, a: Self::I, b: Self::I) -> Self::I;
     fn and_i(self, a: Self::I, b: Self::I) -> Self::I;
     fn or_i(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Shifts right with the sign, and left.
+    /// Arithmetic shift right, and shift left.
     fn shr(self, a: Self::I, n: u32) -> Self::I;
     fn shl(self, a: Self::I, n: u32) -> Self::I;
-    /// a * b - c * d with the right sign, and 0 only where it is 0.
+    /// a * b - c * d with the correct sign, and 0 only if it is exactly 0.
     fn cross(self, a: Self::I, b: Self::I, c: Self::I, d: Self::I) -> Self::F;
 
     fn lt(self, a: Self::F, b: Self::F) -> Self::M;
@@ -64,14 +64,14 @@ pub trait Lanes: Copy {
     fn eq_i(self, a: Self::I, b: Self::I) -> Self::M;
     fn and_m(self, a: Self::M, b: Self::M) -> Self::M;
     fn or_m(self, a: Self::M, b: Self::M) -> Self::M;
-    /// A bit a lane.
+    /// One bit per lane.
     fn bits(self, m: Self::M) -> u32;
     fn select(self, m: Self::M, yes: Self::F, no: Self::F) -> Self::F;
     fn select_i(self, m: Self::M, yes: Self::I, no: Self::I) -> Self::I;
 
-    /// Is any lane negative?
+    /// Whether any lane is negative.
     fn any_negative(self, a: Self::I) -> bool;
-    /// The least of the lanes.
+    /// The minimum of the lanes.
     fn least(self, a: Self::F) -> f32;
 
     /// # Safety
@@ -86,12 +86,12 @@ pub trait Lanes: Copy {
     /// # Safety
     /// `N` words can be written at `p`.
     unsafe fn store_i(self, p: *mut i32, x: Self::I);
-    /// Stores the lanes whose bit is set in `keep`, side by side; what is behind them is overwritten, too.
+    /// Stores the lanes whose bit is set in `keep` contiguously; the memory behind them is overwritten, too.
     ///
     /// # Safety
     /// `N` words can be written at `p`.
     unsafe fn compress(self, p: *mut i32, keep: u32, x: Self::I);
-    /// Depth test and update: the nearer of what is stored and `depth`, in the lanes where `outside` is not negative.
+    /// Depth test and update: the nearer of the stored depth and `depth`, in the lanes where `outside` is not negative.
     ///
     /// # Safety
     /// `N` floats can be read and written at `p`, which is a multiple of `N` floats.
@@ -99,27 +99,27 @@ pub trait Lanes: Copy {
     /// The first, second, third and fourth words of `base[index[0]]`, `base[index[STEP]]`, ...
     ///
     /// # Safety
-    /// `N` indices can be read that far apart, and what they name.
+    /// `N` indices can be read that far apart, and so can the vertices that they refer to.
     unsafe fn fetch<const STEP: usize>(self, base: *const Words, index: *const u32) -> [Self::I; 4];
     /// Writes four words for each lane.
     ///
     /// # Safety
     /// `4 * N` words can be written at `p`.
     unsafe fn spread(self, p: *mut Words, x: [Self::I; 4]);
-    /// (x, y, z, 1) times four columns, for as many vertices as fit in a vector.
+    /// (x, y, z, 1) times a matrix of four columns, for as many vertices as fit in a vector.
     ///
     /// # Safety
     /// `4 * N` floats can be read at `from` and written at `to`.
     unsafe fn transform(self, columns: &[[f32; 4]; 4], from: *const [f32; 4], to: *mut [f32; 4]);
 }
 
-/// A pass, for whichever instruction set.
+/// A pass, generic over the instruction set.
 pub trait Pass {
     type Output;
     fn run<L: Lanes>(self, s: L) -> Self::Output;
 }
 
-/// Can this processor run it? What is not named here runs as `Scalar`.
+/// Whether this processor can run it. Levels that are not listed here run as `Scalar`.
 pub fn usable(level: Implementation) -> Implementation {
     #[cfg(target_arch = "x86_64")]
     {
@@ -155,21 +155,21 @@ pub unsafe fn run<P: Pass>(level: Implementation, pass: P) -> P::Output {
     }
 }
 
-/// Methods that are one expression of intrinsics each.
+/// Methods that each consist of one expression of intrinsics.
 #[cfg(target_arch = "x86_64")]
 macro_rules! ops {
     ($($name:ident($($a:ident: $t:ty),*) -> $r:ty = $e:expr;)*) => {
         $(
             #[inline(always)]
             fn $name(self, $($a: $t),*) -> $r {
-                // SAFETY: the token proves the instruction set, and there are only registers.
+                // SAFETY: the token proves the instruction set, and only registers are accessed.
                 unsafe { $e }
             }
         )*
     };
 }
 
-/// Methods that read or write memory as the trait says.
+/// Methods that access memory as the trait documents.
 #[cfg(target_arch = "x86_64")]
 macro_rules! memory_ops {
     ($($name:ident($($a:ident: $t:ty),*) $(-> $r:ty)? = $e:expr;)*) => {

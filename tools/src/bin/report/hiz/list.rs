@@ -1,8 +1,8 @@
-//! Screen triangles: what the culling leaves, and the rasteriser takes.
+//! Screen triangles: the output of culling and the input of the rasteriser.
 
 use super::lanes::MOST;
 
-/// The corners of triangles, an array for each coordinate: x and y on the grid, and the bits of 1/w.
+/// The corners of triangles, one array per coordinate: x and y on the grid, and the bits of 1/w.
 #[derive(Default)]
 pub struct TriangleList {
     arrays: [[Vec<i32>; 3]; 3],
@@ -18,7 +18,7 @@ impl TriangleList {
         self.len = 0;
     }
 
-    /// Makes room for `more` triangles and whatever a vector writes behind them.
+    /// Makes room for `more` triangles and for the excess that a vector store writes behind them.
     pub fn reserve(&mut self, more: usize) {
         let room = self.len + more + MOST;
         if self.arrays[0][0].len() < room {
@@ -27,19 +27,19 @@ impl TriangleList {
         }
     }
 
-    /// Corner's x, y and depth from triangle `at` on. A vector's worth can be read for every triangle of the list.
+    /// A corner's x, y and depth from triangle `at` on. A whole vector can be read for every triangle of the list.
     pub fn read_at(&self, corner: usize, at: usize) -> [*const i32; 3] {
         debug_assert!(at < self.len);
         self.arrays[corner].each_ref().map(|array| array.as_ptr().wrapping_add(at))
     }
 
-    /// Where the next triangles' x, y and depth of a corner go.
+    /// Where the x, y and depth of a corner of the next triangles are written.
     pub fn write_at(&mut self, corner: usize) -> [*mut i32; 3] {
         let at = self.len;
         self.arrays[corner].each_mut().map(|array| array.as_mut_ptr().wrapping_add(at))
     }
 
-    /// Takes in what was written.
+    /// Adds the triangles that were written.
     ///
     /// # Safety
     /// There is room for as many.

@@ -1,9 +1,9 @@
-//! A hierarchical z-buffer with a depth for each pixel: what the masked buffer is measured beside.
+//! A hierarchical z-buffer with a depth for each pixel, for comparison with the masked buffer.
 //!
-//! As in Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion Culling" (HPG 2016), section 4.1: occluders are
-//! drawn into a buffer of full resolution, the buffer is reduced to the farthest depth of each 8x8 pixels, and rectangles
-//! are tested against those. Written to be as fast as such a rasteriser can reasonably be made. A method is a pass
-//! of that paper's table 1:
+//! As in Hasselgren, Andersson, Akenine-Möller: "Masked Software Occlusion Culling" (HPG 2016), section 4.1: occluders
+//! are drawn into a full-resolution buffer, the buffer is reduced to the farthest depth of each 8x8 pixels, and
+//! rectangles are tested against those. It is written to be as fast as such a rasteriser can reasonably be. Each method
+//! is one pass of that paper's table 1:
 //!
 //! ```text
 //! clear       Clear  every depth to 0, infinitely far
@@ -15,9 +15,9 @@
 //! ```
 //!
 //! Depth is 1/w as in the library. Vertices are snapped to 1/256 pixel (coarser beyond some 2,300x2,300 pixels), edge
-//! functions are exact, with the top-left rule, and depth is that of pixel centres, as floats give it. In memory a tile of
-//! 8x8 pixels lies in one piece: rows of blocks were slower for triangles of 2 pixels on AVX2, and the same within
-//! the noise elsewhere. It uses AVX-512, AVX2 with fused multiply-add, or whatever the compiler makes of arrays of eight.
+//! functions are exact, with the top-left rule, and depth is evaluated at pixel centres in floats. Each tile of 8x8
+//! pixels is contiguous in memory: rows of blocks were slower for triangles of 2 pixels on AVX2, and equal within the
+//! noise elsewhere. It uses AVX-512, AVX2 with fused multiply-add, or whatever the compiler makes of arrays of eight.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -46,32 +46,32 @@ use list::TriangleList;
 use reduce::TILE;
 use screen::Screen;
 
-/// A hierarchical z-buffer, and what its passes hand to each other.
+/// A hierarchical z-buffer, and the data that its passes hand to each other.
 pub struct Hiz {
     level: Implementation,
-    /// Which triangles face away.
+    /// Which triangles are back-facing.
     pub winding: BackfaceWinding,
     screen: Screen,
-    /// Tile after tile of 8x8 pixels, so that small triangles touch few pages of memory; from `start` on, where a cache
-    /// line begins.
+    /// Tiles of 8x8 pixels one after another, so that small triangles touch few pages; they start at `start`, on a
+    /// cache line.
     depth: Vec<f32>,
     start: usize,
-    /// The farthest depth of each tile, and room for a vector behind each row.
+    /// The farthest depth of each tile, with room for a vector after each row.
     farthest: Vec<f32>,
     clip: Vec<[f32; 4]>,
     projected: Vec<Words>,
-    /// Are `projected` the vertices of `clip`?
+    /// Whether `projected` holds the vertices of `clip`.
     is_projected: bool,
     list: TriangleList,
 }
 
 impl Hiz {
-    /// A cleared buffer, on the best instruction set that the processor has.
+    /// A cleared buffer on the best instruction set of the processor.
     pub fn new(width: u32, height: u32) -> Self {
         Self::with_level(width, height, Implementation::Avx512)
     }
 
-    /// A cleared buffer on `level`, or on the next lower that there is: AVX-512, AVX2 or scalar.
+    /// A cleared buffer on `level`, or on the next lower one available: AVX-512, AVX2 or scalar.
     pub fn with_level(width: u32, height: u32, level: Implementation) -> Self {
         let level = lanes::usable(level);
         let [columns, rows] = [width, height].map(|size| (size as usize).div_ceil(TILE));
@@ -92,12 +92,12 @@ impl Hiz {
         new
     }
 
-    /// The instruction set that is used.
+    /// The instruction set in use.
     pub fn level(&self) -> Implementation {
         self.level
     }
 
-    /// What is nearer in w is cut off. 0 at first.
+    /// Sets the near plane, in w: nearer geometry is clipped. Initially 0.
     pub fn set_near(&mut self, near: f32) {
         self.screen.near = near;
         self.is_projected = false;
@@ -121,7 +121,7 @@ impl Hiz {
     pub fn clear(&mut self) {
         let range = self.depth_range();
         self.depth[range].fill(0.0);
-        // What of the last tiles lies beyond the screen must not be what is farthest in them.
+        // Pixels of the last tiles beyond the screen must not be the farthest in their tiles.
         let [width, height] = self.screen.size.map(|size| size as usize);
         for y in 0..height.next_multiple_of(TILE) {
             for x in if y < height { width } else { 0 }..width.next_multiple_of(TILE) {
@@ -131,20 +131,20 @@ impl Hiz {
         }
     }
 
-    /// Where the depth of a pixel is.
+    /// Index of a pixel's depth.
     fn place(&self, x: usize, y: usize) -> usize {
         self.start + y / TILE * self.stride() + (x / TILE * TILE + y % TILE) * TILE + x % TILE
     }
 
-    /// Geom: positions (x, y, z, anything) to clip space. 16 bytes a vertex is the fastest to read, and what
-    /// `glam::Vec3A` takes.
+    /// Geom: positions (x, y, z, anything) to clip space. 16 bytes per vertex are the fastest to read, and the size of
+    /// `glam::Vec3A`.
     pub fn transform(&mut self, positions: &[[f32; 4]], matrix: &Mat4) {
         self.is_projected = false;
         // SAFETY: the level is usable.
         unsafe { lanes::run(self.level, transform::Transform { positions, matrix, out: &mut self.clip }) };
     }
 
-    /// Geom, for vertices (x, y, anything, w) that are in clip space already.
+    /// Geom, for vertices (x, y, anything, w) already in clip space.
     #[cfg(test)]
     pub fn set_clip_space(&mut self, vertices: &[[f32; 4]]) {
         self.is_projected = false;
@@ -152,11 +152,11 @@ impl Hiz {
         self.clip.extend_from_slice(vertices);
     }
 
-    /// Proj: triangles of the vertices that were transformed last, three indices each, to the list that waits for `raster`.
+    /// Proj: appends triangles of the most recently transformed vertices, three indices each, to the list for `raster`.
     /// The first call after a transformation projects the vertices.
     ///
     /// # Panics
-    /// Where there is no such vertex.
+    /// If an index is out of range.
     pub fn project(&mut self, indices: &[u32]) {
         let Self { level, winding, screen, ref clip, ref mut projected, ref mut list, .. } = *self;
         if !self.is_projected {
@@ -168,13 +168,13 @@ impl Hiz {
         unsafe { lanes::run(level, cull::Cull { screen, winding, clip, projected, indices, list }) };
     }
 
-    /// How many triangles wait for `raster`.
+    /// Number of triangles in the list for `raster`.
     #[cfg(test)]
     pub fn waiting(&self) -> usize {
         self.list.len()
     }
 
-    /// Rast: draws what waits.
+    /// Rast: draws the list.
     pub fn raster(&mut self) {
         let (screen, range, stride) = (self.screen, self.depth_range(), self.stride());
         let pass = raster::Raster { screen, list: &self.list, depth: &mut self.depth[range], stride };
@@ -192,7 +192,7 @@ impl Hiz {
         unsafe { lanes::run(self.level, pass) };
     }
 
-    /// Test: is a rectangle at `w_min` hidden by what `generate` found, or off the screen?
+    /// Test: whether a rectangle at `w_min` is hidden according to `generate`, or off screen.
     pub fn test_rect(&self, x_min: f32, y_min: f32, x_max: f32, y_max: f32, w_min: f32) -> bool {
         // NaN fails every comparison.
         if !(x_min <= x_max && y_min <= y_max && w_min > 0.0) {
@@ -220,7 +220,8 @@ impl Hiz {
         self.depth[self.place(x as usize, y as usize)]
     }
 
-    /// The farthest depth in each tile of 8x8 pixels, as `generate` found it: tiles across, and row after row.
+    /// The farthest depth of each tile of 8x8 pixels as found by `generate`: the number of tiles across, and the depths
+    /// row by row.
     #[cfg(test)]
     pub fn farthest(&self) -> (usize, impl Iterator<Item = &[f32]>) {
         let [columns, rows] = self.tiles();

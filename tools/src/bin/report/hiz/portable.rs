@@ -1,4 +1,4 @@
-//! Any processor: arrays of eight, blocks of 8x1 pixels. The compiler makes of them what it can.
+//! Any processor: arrays of eight, blocks of 8x1 pixels. The compiler vectorises them as it can.
 
 use super::lanes::{Lanes, Pass, Words};
 
@@ -48,7 +48,7 @@ impl Lanes for Portable {
         div(a: f32, b: f32) -> f32 = a / b;
         min(a: f32, b: f32) -> f32 = if a < b { a } else { b };
         max(a: f32, b: f32) -> f32 = if a > b { a } else { b };
-        // A fused one would be a call.
+        // A fused multiply-add would be a function call.
         mul_add(a: f32, b: f32, c: f32) -> f32 = a * b + c;
         // Without a call: below 2^22, adding and subtracting 1.5 * 2^23 leaves the nearest integer.
         round(a: f32) -> i32 = (a + 12_582_912.0 - 12_582_912.0) as i32;

@@ -1,9 +1,9 @@
-//! Rectangles against the farthest depths of tiles.
+//! Tests rectangles against the farthest depths of tiles.
 
 use super::lanes::{COUNT, Lanes, Pass};
 use super::reduce::TILE;
 
-/// Is every tile from the first to the last nearer than `depth`?
+/// Whether every tile from the first to the last is nearer than `depth`.
 pub struct Query<'a> {
     pub farthest: &'a [f32],
     /// Floats from one row of tiles to the next.
@@ -13,8 +13,8 @@ pub struct Query<'a> {
     pub depth: f32,
 }
 
-/// The first and last tile that an interval of [-1, 1] touches, of `size` pixels. One that ends on a boundary does not
-/// touch what is beyond.
+/// The first and last tile of `size` pixels that an interval of [-1, 1] touches. An interval that ends on a tile
+/// boundary does not touch the tile beyond.
 #[inline(always)]
 pub fn tiles(min: f32, max: f32, size: u32) -> (usize, usize) {
     let pixel = |v: f32| (f64::from(v.clamp(-1.0, 1.0)) * 0.5 + 0.5) * f64::from(size);
@@ -33,7 +33,7 @@ impl Pass for Query<'_> {
         let depth = s.f(self.depth);
         // SAFETY: there are as many numbers as the most lanes.
         let lane = unsafe { s.load_i(COUNT.as_ptr().cast()) };
-        // One decision a row of tiles: over its whole vectors first, then over the tiles that are left.
+        // One branch per row of tiles: first over its whole vectors, then over the remaining tiles.
         let count = self.last[0] + 1 - self.first[0];
         let whole = count / L::N * L::N;
         let left = s.lt_i(lane, s.i((count - whole) as i32));
@@ -41,7 +41,7 @@ impl Pass for Query<'_> {
             let tiles = &self.farthest[y * self.row + self.first[0]..][..whole + L::N];
             let mut least = s.f(f32::INFINITY);
             for x in (0..whole).step_by(L::N) {
-                // SAFETY: a vector more than these is within the slice.
+                // SAFETY: one vector more than these is within the slice.
                 least = s.min(least, unsafe { s.load(tiles.as_ptr().add(x)) });
             }
             // SAFETY: this is that vector.

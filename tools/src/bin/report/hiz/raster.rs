@@ -1,4 +1,4 @@
-//! Filling triangles: edge functions, depth test and update, a block of pixels a step.
+//! Filling triangles: edge functions, depth test and update, one block of pixels per step.
 
 use super::lanes::{COUNT, Lanes, Pass};
 use super::list::TriangleList;
@@ -20,7 +20,7 @@ impl Pass for Raster<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, s: L) {
-        // The tile of the screen's last pixel is there.
+        // The tile of the screen's last pixel exists.
         let [x, y] = self.screen.size.map(|size| (size as usize - 1) / TILE);
         assert!((x + 1) * TILE * TILE <= self.stride && (y + 1) * self.stride <= self.depth.len());
         assert!((self.depth.as_ptr() as usize).is_multiple_of(64) && self.stride.is_multiple_of(16));
@@ -30,7 +30,7 @@ impl Pass for Raster<'_> {
             while live != 0 {
                 let t = live.trailing_zeros() as usize;
                 live &= live - 1;
-                // SAFETY: its blocks are on the screen, whose last tile lies within the buffer.
+                // SAFETY: its blocks are on the screen, whose last tile is within the buffer.
                 unsafe { fill(s, &batch, t & 15, self.depth.as_mut_ptr(), self.stride) };
             }
         }
@@ -40,7 +40,7 @@ impl Pass for Raster<'_> {
 /// Fills triangle `t` of a batch.
 ///
 /// # Safety
-/// Its tiles lie within the buffer, whose rows of tiles lie `stride` floats apart.
+/// Its tiles are within the buffer, whose rows of tiles are `stride` floats apart.
 #[inline(always)]
 unsafe fn fill<L: Lanes>(s: L, batch: &Batch, t: usize, depth: *mut f32, stride: usize) {
     // SAFETY: there are as many numbers as the most lanes.
@@ -88,8 +88,8 @@ unsafe fn fill<L: Lanes>(s: L, batch: &Batch, t: usize, depth: *mut f32, stride:
     unsafe { walk.tiles(s, column, stride, top, [across, down], &cross) }
 }
 
-/// An edge function at the first block's pixels, and its steps from block to block. A function, as closures that are called
-/// twice are not inlined.
+/// An edge function at the first block's pixels, and its steps from block to block. A function, because closures that
+/// are called twice are not inlined.
 #[inline(always)]
 fn edge<L: Lanes>(s: L, batch: &Batch, k: usize, t: usize, [x, y]: [L::I; 2]) -> (L::I, L::I, L::I) {
     let (a, b) = (s.i(batch.edge_x[k][t]), s.i(batch.edge_y[k][t]));
@@ -110,11 +110,10 @@ struct Walk<L: Lanes> {
 }
 
 impl<L: Lanes> Walk<L> {
-    /// All of a box that is `ACROSS` blocks wide, row after row of blocks: a loop without a branch that depends on anything
-    /// but the height.
+    /// Fills a box that is `ACROSS` blocks wide, row by row of blocks: a loop whose only branch depends on the height.
     ///
     /// # Safety
-    /// The box lies within the buffer, and its first column at `column`.
+    /// The box is within the buffer, with its first column at `column`.
     #[inline(always)]
     unsafe fn rows<const ACROSS: usize>(self, s: L, column: *mut f32, stride: usize, top: usize, down: i32) {
         let Self { edges: [mut e0, mut e1, mut e2], right, down: [y0, y1, y2], mut z, z_x, z_y, nearest } = self;
@@ -132,11 +131,11 @@ impl<L: Lanes> Walk<L> {
         }
     }
 
-    /// A wide box, a row of tiles at a time: from the first to the last tile in which an edge leaves anything. How many that
-    /// are cannot be predicted, so that it is asked once a row of tiles and not once a row of blocks.
+    /// Fills a wide box, one row of tiles at a time, from the first to the last tile that may be inside all edges.
+    /// Their number cannot be predicted, so it is computed once per row of tiles and not once per row of blocks.
     ///
     /// # Safety
-    /// The box lies within the buffer, and its first column at `column`.
+    /// The box is within the buffer, with its first column at `column`.
     #[inline(always)]
     unsafe fn tiles(
         self,
@@ -153,7 +152,7 @@ impl<L: Lanes> Walk<L> {
         let mut first_row = -((top % L::ROWS) as i32);
         let mut tiles = column.wrapping_add(top / L::ROWS * stride);
         while first_row < down {
-            // A hundredth of a block is more than rounding can take away.
+            // A hundredth of a block is more than the rounding error.
             let (mut from, mut to) = (0.0_f32, (across - 1) as f32);
             for [at, step, not_left, not_right] in cross {
                 let x = at + step * first_row as f32;
@@ -171,8 +170,8 @@ impl<L: Lanes> Walk<L> {
             for x in first as usize..end as usize {
                 let tile = tiles.wrapping_add(x * TILE * TILE);
                 let mut zz = s.mul_add(column, z_x, z);
-                // Inside of all edges in its first and last row: whole tiles need no edge functions. Where a tile is few
-                // vectors, asking costs what it saves.
+                // If the first and last rows are inside all edges, whole tiles need no edge functions. If a tile is
+                // only a few vectors, the test costs as much as it saves.
                 let last = s.or_i(s.add_i(f0, l0), s.or_i(s.add_i(f1, l1), s.add_i(f2, l2)));
                 if L::ROWS < 8 || s.any_negative(s.or_i(last, s.or_i(f0, s.or_i(f1, f2)))) {
                     let (mut g0, mut g1, mut g2) = (f0, f1, f2);

@@ -5,7 +5,7 @@ use super::lanes::{Lanes, Pass};
 /// A tile's width and height in pixels.
 pub const TILE: usize = 8;
 
-/// A buffer of tiles to the least depth of each.
+/// Reduces a buffer of tiles to the farthest (least) depth of each.
 pub struct Reduce<'a> {
     pub depth: &'a [f32],
     /// Tiles across and down.
@@ -26,7 +26,7 @@ impl Pass for Reduce<'_> {
             for (tile, farthest) in strip.chunks_exact(TILE * TILE).zip(farthest) {
                 let mut least = s.f(f32::INFINITY);
                 for r in 0..L::ROWS {
-                    // SAFETY: a tile is so many vectors.
+                    // SAFETY: a tile consists of this many vectors.
                     least = s.min(least, unsafe { s.load(tile.as_ptr().add(r * L::N)) });
                 }
                 *farthest = s.least(least);

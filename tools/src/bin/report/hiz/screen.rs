@@ -1,24 +1,25 @@
-//! From clip space to pixels: the grid that vertices are snapped to, and how far off the screen they may lie.
+//! From clip space to pixels: the grid that vertices are snapped to, and the guard band.
 
 use super::lanes::Lanes;
 
 /// The screen of a buffer.
 #[derive(Clone, Copy)]
 pub struct Screen {
-    /// Vertices lie on a grid of 1/2^bits pixel.
+    /// Vertices are on a grid of 1/2^bits pixel.
     pub bits: u32,
     /// Half the size, in steps of the grid.
     pub half: [f32; 2],
     pub size: [i32; 2],
-    /// How far beyond the screen's edges vertices may lie before a triangle is clipped, in steps of the grid.
+    /// Guard band: how far beyond the screen's edges vertices may be before a triangle is clipped, in steps of the
+    /// grid.
     pub guard: f32,
     /// The near plane, in w.
     pub near: f32,
 }
 
 impl Screen {
-    /// The finest grid up to 1/256 pixel on which edge functions at pixels fit in 32 bits, for triangles that leave the
-    /// screen by 256 pixels at least.
+    /// The finest grid, up to 1/256 pixel, on which edge functions at pixels fit in 32 bits, for a guard band of at
+    /// least 256 pixels.
     pub fn new(width: u32, height: u32) -> Self {
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "{width}x{height} pixels");
         let fits = |guard: u32, bits: u32| {
@@ -38,18 +39,18 @@ impl Screen {
         }
     }
 
-    /// The least and greatest coordinate on the grid that needs no clipping.
+    /// The minimum and maximum grid coordinate that needs no clipping.
     pub fn range(&self, axis: usize) -> (f32, f32) {
         (-self.guard, 2.0 * self.half[axis] + self.guard)
     }
 
-    /// How many times the screen the range is.
+    /// The size of that range as a multiple of the screen's.
     pub fn guard_factor(&self, axis: usize) -> f64 {
         1.0 + f64::from(self.guard / self.half[axis])
     }
 
-    /// A vertex (x, y, w) on the grid and 1/w: the operations of the vectors, so that clipped triangles meet others
-    /// without a gap.
+    /// A vertex (x, y, w) on the grid, and 1/w: computed with the same operations as the vectors, so that there are no
+    /// gaps between clipped triangles and others.
     pub fn project(&self, [x, y, w]: [f32; 3]) -> ([i32; 2], f32) {
         let depth = 1.0 / w;
         let on_grid = |v: f32, axis: usize| {
@@ -60,8 +61,8 @@ impl Screen {
     }
 }
 
-/// The first and last of `size` pixels whose centres are between the least and the greatest of three coordinates; the last
-/// is before the first where there is none. A function, as closures that are called twice are not inlined.
+/// The first and last of `size` pixels whose centres are between the minimum and maximum of three coordinates; the last
+/// is before the first if there are none. A function, because closures that are called twice are not inlined.
 #[inline(always)]
 pub fn pixels<L: Lanes>(s: L, bits: u32, [a, b, c]: [L::I; 3], size: i32) -> (L::I, L::I) {
     let half = (1 << bits) / 2;

@@ -1,39 +1,40 @@
-//! Triangle setup: edge functions and depth planes, as many triangles at a time as there are lanes.
+//! Triangle setup: edge functions and depth planes, one triangle per lane.
 
 use super::lanes::{COUNT, Lanes, MOST};
 use super::list::TriangleList;
 use super::screen::{Screen, pixels};
 
-/// What is outside of no edge, and what lies beyond everything.
+/// A distance beyond everything, for lanes that are outside no edge.
 const FAR: f32 = 1e9;
 
-/// What the filling of triangles needs, a lane a triangle. Edge functions count in steps of the grid times pixels, and are
-/// not negative inside.
+/// The data needed to fill triangles, one triangle per lane. Edge functions are in units of grid steps times pixels,
+/// and not negative inside.
 #[derive(Default)]
 #[repr(C, align(64))]
 pub struct Batch {
-    /// The first block, and how many across and down.
+    /// The first block, and the number of blocks across and down.
     pub block: [[i32; MOST]; 2],
     pub blocks: [[i32; MOST]; 2],
     /// Edge functions at the first block's first pixel, and their steps from pixel to pixel.
     pub edge: [[i32; MOST]; 3],
     pub edge_x: [[i32; MOST]; 3],
     pub edge_y: [[i32; MOST]; 3],
-    /// Depth at the first block's first pixel, and its steps; and the nearest vertex.
+    /// Depth at the first block's first pixel, and its steps; and the depth of the nearest vertex.
     pub depth: [f32; MOST],
     pub depth_x: [f32; MOST],
     pub depth_y: [f32; MOST],
     pub nearest: [f32; MOST],
-    /// Where, in blocks from the first, a row of blocks enters or leaves an edge, and what to add for the next row.
+    /// Where a row of blocks crosses an edge, in blocks from the first, and the step to the next row.
     pub cross: [[f32; MOST]; 3],
     pub cross_step: [[f32; MOST]; 3],
-    /// From the first row's crossing to where a row of tiles begins or ends, or so far off that nothing is bounded.
+    /// Offset from the first row's crossing to where a row of tiles begins or ends, or so large that nothing is
+    /// bounded.
     pub not_left: [[f32; MOST]; 3],
     pub not_right: [[f32; MOST]; 3],
 }
 
 impl Batch {
-    /// Sets up the triangles of a list from `at` on; says for which lanes there are blocks.
+    /// Sets up the triangles of a list from `at` on; returns which lanes have blocks.
     #[inline(always)]
     pub fn set_up<L: Lanes>(&mut self, s: L, screen: &Screen, list: &TriangleList, at: usize) -> u32 {
         let ((x0, y0, z0), (x1, y1, z1), (x2, y2, z2)) =
@@ -41,7 +42,7 @@ impl Batch {
         let (bits, unit) = (screen.bits, (1 << screen.bits) as f32);
         let half = s.i((1 << bits) / 2);
 
-        // From the first to the last pixel whose centre the box around a triangle holds.
+        // From the first to the last pixel whose centre is inside the triangle's bounds.
         let (left, right) = pixels(s, bits, [x0, x1, x2], screen.size[0]);
         let (top, bottom) = pixels(s, bits, [y0, y1, y2], screen.size[1]);
         let (left, top) = (s.shr(left, 3), s.shr(top, L::LOG_HEIGHT));
@@ -60,11 +61,11 @@ impl Batch {
         {
             let (a, b) = (s.sub_i(ya, yb), s.sub_i(xb, xa));
             let (dx, dy) = (s.sub_i(px, xa), s.sub_i(py, ya));
-            // Centres on an edge are inside of left and top ones; one less makes them outside of the others.
+            // Centres on left and top edges are inside; subtracting one makes centres on the other edges outside.
             let left_or_top = s.or_m(s.lt_i(s.i(0), a), s.and_m(s.eq_i(a, s.i(0)), s.lt_i(s.i(0), b)));
             let bias = s.select_i(left_or_top, s.i(0), s.i(-1));
-            // a * dx + b * dy + bias, divided by the grid's steps in a pixel and rounded down, which changes no sign at
-            // any pixel. In parts, so that nothing is lost: the parts above wrap around, but the sum fits.
+            // a * dx + b * dy + bias, divided by the grid steps per pixel and rounded down, which changes no sign at
+            // any pixel. Computed in parts, so that nothing is lost: the high parts wrap around, but the sum fits.
             let fraction = s.i((1 << bits) - 1);
             let low = s.add_i(s.mul_i(a, s.and_i(dx, fraction)), s.mul_i(b, s.and_i(dy, fraction)));
             let high = s.add_i(s.mul_i(a, s.shr(dx, bits)), s.mul_i(b, s.shr(dy, bits)));
@@ -73,7 +74,7 @@ impl Batch {
             put_i(s, &mut self.edge_x[k], a);
             put_i(s, &mut self.edge_y[k], b);
 
-            // A block is worth looking at where its best pixel is inside: where edge + best + a * width * x >= 0.
+            // A block may have pixels inside if its best pixel is: if edge + best + a * width * x >= 0.
             let (width, height) = (8, 1 << L::LOG_HEIGHT);
             let best_x = s.mul_i(s.max_i(a, s.i(0)), s.i(width - 1));
             let best_y = s.mul_i(s.max_i(b, s.i(0)), s.i(height - 1));
@@ -84,7 +85,7 @@ impl Batch {
             put(s, &mut self.cross[k], s.mul(best, inverse));
             let step = s.mul(s.mul(b, s.f(height as f32)), inverse);
             put(s, &mut self.cross_step[k], step);
-            // A row of tiles is crossed from the first row's crossing to the last one's.
+            // A row of tiles is crossed from its first row's crossing to its last row's.
             let rest = s.mul(step, s.f((L::ROWS - 1) as f32));
             let (least, most) = (s.min(rest, s.f(0.0)), s.max(rest, s.f(0.0)));
             put(s, &mut self.not_left[k], s.select(s.lt(s.f(0.0), a), least, s.f(-FAR)));
@@ -111,11 +112,11 @@ impl Batch {
     }
 }
 
-/// A corner's x, y and depth of the triangles from `at` on.
+/// The x, y and depth of a corner of the triangles from `at` on.
 #[inline(always)]
 fn corner<L: Lanes>(s: L, list: &TriangleList, k: usize, at: usize) -> (L::I, L::I, L::F) {
     let [x, y, z] = list.read_at(k, at);
-    // SAFETY: a vector's worth can be read for each triangle of the list.
+    // SAFETY: a whole vector can be read for each triangle of the list.
     unsafe { (s.load_i(x), s.load_i(y), s.load(z.cast())) }
 }
 

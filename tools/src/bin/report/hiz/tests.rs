@@ -1,5 +1,5 @@
-//! Against a plain z-buffer in doubles that neither clips nor projects: at each pixel it solves for the point of the
-//! triangle's plane that is seen there.
+//! Comparison with a plain z-buffer in doubles that neither clips nor projects: for each pixel it solves for the
+//! visible point of the triangle's plane.
 
 use fastrand::Rng;
 use glam::{DMat3, DVec3, Mat4, Vec4};
@@ -9,10 +9,10 @@ use super::Hiz;
 
 const LEVELS: [Implementation; 3] = [Implementation::Scalar, Implementation::Avx2, Implementation::Avx512];
 
-/// What a vertex may have moved by snapping and in floats, in pixels.
+/// How far a vertex may have moved through snapping and float rounding, in pixels.
 const SHIFT: f64 = 0.01;
 
-/// The least and most that the depth of each pixel may be.
+/// The minimum and maximum allowed depth of each pixel.
 struct Plain {
     size: [u32; 2],
     near: f64,
@@ -67,7 +67,8 @@ fn draw(hiz: &mut Hiz, vertices: &[[f32; 4]]) {
     hiz.raster();
 }
 
-/// Triangles from `size` of the screen on, near and far; some reach behind the eye or far off the screen.
+/// Triangles with corners up to `size` (in NDC) from a random point, near and far; some reach behind the eye or far off
+/// screen.
 fn triangles(random: &mut Rng, n: usize, size: f32) -> Vec<[f32; 4]> {
     let mut vertices = Vec::new();
     for _ in 0..n {
@@ -144,7 +145,7 @@ fn a_matrix_takes_positions_to_clip_space_and_faces_are_culled() {
     }
 }
 
-/// A jittered grid of squares, cut in two each, that covers more than the screen.
+/// A jittered grid of squares, each split in two triangles, that covers more than the screen.
 fn sheet(random: &mut Rng, n: u32, reach: f32) -> (Vec<[f32; 4]>, Vec<u32>) {
     let mut vertices = Vec::new();
     for i in 0..(n + 1) * (n + 1) {
@@ -161,7 +162,7 @@ fn sheet(random: &mut Rng, n: u32, reach: f32) -> (Vec<[f32; 4]>, Vec<u32>) {
 #[test]
 fn meshes_have_no_cracks() {
     let mut random = Rng::with_seed(3);
-    // The last ones reach beyond the guard band, and are clipped there.
+    // The last ones extend beyond the guard band, and are clipped there.
     for (n, reach) in [(3, 4.0), (12, 1.3), (60, 1.2), (4, 60.0), (5, 90.0)] {
         for level in LEVELS {
             let (vertices, indices) = sheet(&mut random, n, reach);
@@ -213,7 +214,7 @@ fn tiles_hold_the_farthest_depth_and_hide_what_is_behind() {
                 if !hiz.test_rect(x0, y0, x1, y1, w) {
                     continue;
                 }
-                // No pixel that it overlaps is as far.
+                // No pixel that it overlaps is as far away.
                 for i in 0..size[0] * size[1] {
                     let (x, y) = (i % size[0], i / size[0]);
                     let edge = |v: u32, size: u32| v as f32 / size as f32 * 2.0 - 1.0;
@@ -246,7 +247,7 @@ fn a_wall_hides_what_is_behind_it_and_a_cleared_buffer_nothing() {
         hiz.clear();
         hiz.generate();
         assert!(!hiz.test_rect(0.1, 0.1, 0.2, 0.2, 1e30));
-        // Nothing is drawn of its back.
+        // Nothing is drawn of its back face.
         draw(&mut hiz, &[wall[0], wall[2], wall[1]]);
         assert_eq!(hiz.waiting(), 0);
         assert!((0..333 * 77).all(|i| hiz.depth(i % 333, i / 333) == 0.0));

@@ -1,10 +1,10 @@
-//! Vertices to clip space.
+//! Transforms vertices to clip space.
 
 use glam::Mat4;
 
 use super::lanes::{Lanes, MOST, Pass};
 
-/// Positions (x, y, z, anything) to clip-space (x, y, z, w). Places of 16 bytes need no shuffles to be loaded.
+/// Positions (x, y, z, anything) to clip-space (x, y, z, w). Elements of 16 bytes can be loaded without shuffles.
 pub struct Transform<'a> {
     pub positions: &'a [[f32; 4]],
     pub matrix: &'a Mat4,
@@ -21,7 +21,7 @@ impl Pass for Transform<'_> {
         out.resize(positions.len(), [0.0; 4]);
         let whole = positions.len() / L::N * L::N;
         for i in (0..whole).step_by(L::N) {
-            // SAFETY: both have that many from here on.
+            // SAFETY: both have this many elements from here on.
             unsafe { s.transform(&columns, positions.as_ptr().add(i), out.as_mut_ptr().add(i)) };
         }
         let (mut from, mut to) = ([[0.0; 4]; MOST], [[0.0; 4]; MOST]);

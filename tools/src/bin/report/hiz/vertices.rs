@@ -1,9 +1,10 @@
-//! Vertices to the screen: divide, snap, mark what has to be clipped. Once a vertex, however many triangles share it.
+//! Projects vertices to the screen: divides, snaps, marks those that need clipping. Once per vertex, however many
+//! triangles share it.
 
 use super::lanes::{COUNT, Lanes, MOST, Pass, Words};
 use super::screen::Screen;
 
-/// Outside of a plane of the view.
+/// Outside a plane of the frustum.
 pub const NEAR: i32 = 1;
 pub const LEFT: i32 = 2;
 pub const RIGHT: i32 = 4;
@@ -11,10 +12,10 @@ pub const BELOW: i32 = 8;
 pub const ABOVE: i32 = 16;
 /// All of them.
 pub const PLANES: i32 = 31;
-/// Before the near plane or beyond the guard band.
+/// In front of the near plane or beyond the guard band.
 pub const CLIP: i32 = 32;
 
-/// Clip-space vertices to x and y on the grid, 1/w, and marks.
+/// Clip-space vertices to x and y on the grid, 1/w, and clip marks.
 pub struct Project<'a> {
     pub screen: Screen,
     pub clip: &'a [[f32; 4]],
@@ -48,11 +49,11 @@ impl Pass for Project<'_> {
 /// As many vertices as there are lanes can be read and written.
 #[inline(always)]
 unsafe fn project<L: Lanes>(s: L, screen: &Screen, from: *const Words, to: *mut Words) {
-    // SAFETY: the caller vouches for them; they lie side by side.
+    // SAFETY: the caller's contract; they are contiguous.
     let [x, y, _, w] = unsafe { s.fetch::<1>(from, COUNT.as_ptr()) };
     let (x, y, w) = (s.float_of(x), s.float_of(y), s.float_of(w));
     let depth = s.div(s.f(1.0), w);
-    // Not fused: `Screen::project` rounds alike.
+    // Not fused: `Screen::project` rounds in the same way.
     let [half_width, half_height] = screen.half;
     let across = s.add(s.mul(s.mul(x, depth), s.f(half_width)), s.f(half_width));
     let down = s.add(s.mul(s.mul(y, depth), s.f(-half_height)), s.f(half_height));
@@ -77,6 +78,6 @@ unsafe fn project<L: Lanes>(s: L, screen: &Screen, from: *const Words, to: *mut 
             ),
         );
     }
-    // SAFETY: the caller vouches for the room.
+    // SAFETY: there is room, by the caller's contract.
     unsafe { s.spread(to, [s.round(across), s.round(down), s.bits_of(depth), marks]) };
 }
