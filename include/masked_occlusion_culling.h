@@ -23,7 +23,7 @@
  *         MOC_ClearBuffer(moc);
  *         MOC_RenderTriangles(moc, wall, triangles, 2, NULL, MOC_BACKFACE_CW, MOC_CLIP_PLANE_ALL, NULL, NULL);
  *
- *         // An object whose box on the screen is a fifth of its width and height, and whose nearest point is at 12.
+ *         // An object whose screen rectangle is a fifth of the screen's width and height, and whose nearest point is at 12.
  *         int32_t result;
  *         MOC_TestRect(moc, -0.2f, -0.2f, 0.2f, 0.2f, 12, &result);
  *         puts(result == MOC_VISIBLE ? "draw it" : "hidden");
@@ -32,82 +32,84 @@
  *         return 0;
  *     }
  *
- * Order of calls. Once: MOC_DefaultSettings if the defaults do not suit, MOC_Create, MOC_SetResolution, MOC_SetNearClipPlane. Each frame:
- * MOC_ClearBuffer, then draws and tests, in any order and as often as wanted. A test answers from what is drawn
- * by then, so draw first what is near and large. At the end: MOC_ThreadpoolDestroy and MOC_Destroy.
+ * Order of calls. Once: MOC_DefaultSettings if the defaults do not suit, MOC_Create, MOC_SetResolution,
+ * MOC_SetNearClipPlane. Each frame: MOC_ClearBuffer, then draws and tests, in any order and as often as needed. A test
+ * is answered from what has been drawn so far, so draw near and large occluders first. At the end:
+ * MOC_ThreadpoolDestroy and MOC_Destroy.
  *
  * Units
- *   clip space   (x, y, w): x right, y up, w away from the eye and positive in view. z is not looked at. On the
- *                screen is what has -w <= x <= w and -w <= y <= w.
+ *   clip space   (x, y, w): x right, y up, w away from the eye and positive in view. z is not used. A point is on the
+ *                screen if -w <= x <= w and -w <= y <= w.
  *   NDC          normalised device coordinates: x/w and y/w, the screen is -1 to 1, y up. For MOC_TestRect.
  *   w            near planes and `wmin` are distances in clip-space w, in the program's own unit of length.
  *   depth        1/w: 0 is infinitely far, larger is nearer. Negative where nothing was drawn.
  *   pixels       columns from the left, rows from the top, or from the bottom with MOC_Y_AXIS_UP. A draw covers the
- *                pixels whose centres are inside, on vertices rounded to 1/256 pixel, by the top-left rule; a test
+ *                pixels whose centres are inside, with vertices rounded to 1/256 pixel and the top-left rule; a test
  *                covers every pixel that is touched.
  *   counts       `n_triangles` and `triangle_count` count triangles, `vertex_count` vertices, `vertex_floats` and
- *                `out_floats` floats; strides and offsets are bytes.
+ *                `out_floats` floats; strides and offsets are in bytes.
  *
  * Ranges
  *   buffers      1 to 16384 pixels wide and high.
- *   w            2^-30 to 2^40. What is nearer is cut off. An occluder's triangle with a corner that is farther is
- *                dropped, an occludee with one counts as visible.
- *   x, y         any finite number. A NaN or an infinity drops an occluder's triangle, and makes an occludee visible.
- *   triangles    0 to INT32_MAX a call; indices have 32 bits and no sign.
+ *   w            2^-30 to 2^40. Nearer geometry is clipped. An occluder triangle with a corner that is farther is dropped;
+ *                an occludee with one counts as visible.
+ *   x, y         any finite number. An occluder triangle with a NaN or an infinity is dropped; an occludee with one is visible.
+ *   triangles    0 to INT32_MAX per call; indices are unsigned 32-bit integers.
  *
- * Status. Every function returns a MOC_Status, but for MOC_GetAbiVersion, MOC_StatusText and MOC_GetLastStatus. Where it is not
- * MOC_STATUS_OK, nothing was drawn or changed, unless the function says otherwise, and a `result` is MOC_VISIBLE:
- * a program that does not look at the status of draws and tests culls less, and nothing worse. Enumerations are
- * passed as int32_t and checked. MOC_GetLastStatus returns the status of the thread's last call, and MOC_SetMessageCallback
- * sets a function that receives which argument was refused and why.
+ * Status. Every function returns a MOC_Status, except MOC_GetAbiVersion, MOC_StatusText and MOC_GetLastStatus. If it is
+ * not MOC_STATUS_OK, nothing was drawn or changed, unless the function's documentation says otherwise, and a `result`
+ * is MOC_VISIBLE: a program that ignores the status of draws and tests culls less, but nothing worse happens.
+ * Enumerations are passed as int32_t and checked. MOC_GetLastStatus returns the status of the thread's last call, and
+ * MOC_SetMessageCallback sets a function that receives which argument was refused and why.
  *
- * Null. A pointer may be null where the function says so. Where it may not, null is refused with
- * MOC_STATUS_NULL_POINTER. Any other pointer has to be right, which the library cannot see: the paragraph
- * "Required" of a function says what has to hold, and without it the behaviour is undefined. Where it says "null or",
- * null does no harm; whether it is refused is said above it. Indices are trusted, too, unless a MOC_Mesh gives the number of
- * vertices; functions whose names end in Checked take the length of the array, and look at every one.
+ * Null. A pointer may be null where the function's documentation says so; otherwise null is refused with
+ * MOC_STATUS_NULL_POINTER. The library cannot check any other pointer: the paragraph "Required" of a function states
+ * what must hold, and if it does not, the behaviour is undefined. Where that paragraph says "null or", null does no
+ * harm; the text above it says whether null is refused. Indices are trusted, too, unless a MOC_Mesh gives the number of
+ * vertices; functions whose names end in Checked take the length of the array and check every index.
  *
- * Structs that may grow begin with their `size`, which the caller sets: MOC_Settings settings = {.size = sizeof settings}. A
- * program that was compiled with an older header passes a smaller size, and nothing beyond it is read or written. A size smaller
- * than that of the first version is refused with MOC_STATUS_INVALID_SIZE.
+ * Structs that may grow begin with their `size`, which the caller sets: MOC_Settings settings = {.size = sizeof
+ * settings}. A program compiled with an older header passes a smaller size, and nothing beyond it is read or written. A
+ * size smaller than that of the first version is refused with MOC_STATUS_INVALID_SIZE.
  *
- * Meshes. MOC_RenderMesh, MOC_TestMesh, MOC_BinMesh, MOC_RecordMesh and those of the pool take a MOC_Mesh. MOC_RenderTriangles,
- * MOC_TestTriangles, MOC_BinTriangles and MOC_RecordRenderTriangles take the same one by one, as the methods of the class do.
+ * Meshes. MOC_RenderMesh, MOC_TestMesh, MOC_BinMesh, MOC_RecordMesh and those of the pool take a MOC_Mesh.
+ * MOC_RenderTriangles, MOC_TestTriangles, MOC_BinTriangles and MOC_RecordRenderTriangles take the same data as separate
+ * arguments, like the methods of the C++ class.
  *
- * Who owns what. MOC_Create, MOC_ThreadpoolCreate, MOC_RecordingLoad and MOC_RecordingFromMemory make what the caller
- * destroys. All else stays the caller's, and is read or written during the call only. It may be freed when the call
- * returns, with three exceptions: the vertices and indices of calls submitted to a pool, and the objects of
- * MOC_ThreadpoolMergeBuffers, must stay unchanged until MOC_ThreadpoolFlush or another flushing call returns (matrix and layout
- * are copied); and the callbacks of MOC_Settings are called until the object is destroyed. A pool and the object that it draws
- * into may be destroyed in either order.
+ * Ownership. The caller destroys what MOC_Create, MOC_ThreadpoolCreate, MOC_ThreadpoolCreateFrom, MOC_RecordingLoad and
+ * MOC_RecordingFromMemory create. All other memory remains the caller's, is read or written only during the call, and
+ * may be freed when the call returns, with three exceptions: the vertices and indices of calls submitted to a pool, and
+ * the objects of MOC_ThreadpoolMergeBuffers, must stay unchanged until MOC_ThreadpoolFlush or another flushing call
+ * returns (matrix and layout are copied); and the callbacks of MOC_Settings are called until the object is destroyed. A
+ * pool and the object that it draws into may be destroyed in either order.
  *
- * Threads. Different objects are independent, and none is bound to the thread that made it. Functions that take a
- * const object may run at once on several threads while no function that takes it without const does. One of them
- * draws, MOC_RenderTrilist: it says what it asks for. A pool may be called from several threads at once. While a pool
- * draws into an object, any thread may query that object; calls that would change or copy its buffer are refused
- * (MOC_STATUS_BUSY) until MOC_Flush.
+ * Threads. Different objects are independent, and none is bound to the thread that created it. Functions that take a
+ * const object may run on several threads at once, as long as no function runs that takes the object without const. One
+ * of them draws: MOC_RenderTrilist, whose documentation states its requirements. A pool may be called from several
+ * threads at once. While a pool draws into an object, any thread may query that object; calls that would change or copy
+ * its buffer are refused (MOC_STATUS_BUSY) until MOC_Flush.
  *
- * Traps
- *   floating point   A call rounds to nearest, keeps denormals and does not trap, whatever the thread has set, and restores
- *                    the thread's settings: the same bits in any rounding mode, and no SIGFPE. It may leave exception flags
- *                    set (fetestexcept) if the thread has the default settings. On processors other than x86 with SSE and
- *                    aarch64 nothing is set: there the results hold only for threads that round to nearest.
+ * Pitfalls
+ *   floating point   A call rounds to nearest, keeps denormals and does not trap, whatever the thread's settings, and restores
+ *                    them: the results are the same bits in any rounding mode, and there is no SIGFPE. It may leave exception
+ *                    flags set (fetestexcept) if the thread has the default settings. On processors other than x86 with SSE and
+ *                    aarch64 the settings are not changed: there, results are specified only for threads that round to nearest.
  *   stack            A draw or a test of triangles needs up to 59 KB of stack (64 KB in a build without optimisation),
- *                    MOC_BinTriangles 42, MOC_RenderTrilist 33, MOC_TestRect and the others less than 5. A 64 KB fiber is too
- *                    small for draws and triangle tests once its own frames are counted: give it 96 KB or more.
+ *                    MOC_BinTriangles 42 KB, MOC_RenderTrilist 33 KB, MOC_TestRect and the others less than 5 KB. 64 KB is too
+ *                    small for draws and triangle tests once a fiber's own frames are counted: give fibers 96 KB or more.
  *   transforming     MOC_TransformVertices does not work in place: it writes 16 bytes per vertex, and with a smaller input
  *                    stride it would overwrite vertices that it has not read yet.
  *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it mapped until the thread ends,
- *                    the main thread forever. That is safe, but loading the same path again gives the old library, not a new build.
+ *                    the main thread forever. That is safe, but loading the same path again gives the old build.
  *   allocation       The callbacks of MOC_Settings must not throw; MOC_CallAlloc is for allocators that do.
  *
- * Where to go from here
- *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, boxes on the screen, orthographic views
+ * Further reading
+ *   docs/conventions.md     matrices, vertex layouts, Direct3D, OpenGL, Vulkan, screen bounds of boxes, orthographic views
  *   docs/migrating.md       for programs that use Intel's MaskedOcclusionCulling
  *   docs/recordings.md      recorded frames
  *   cpp-examples/           programs in C and C++
- *   moc_names.h             a prefix for the function names, for when they collide with others
- *   MaskedOcclusionCulling.h, CullingThreadpool.h, FrameRecorder.h     the same for C++
+ *   moc_names.h             a prefix for the function names, in case they collide with others
+ *   MaskedOcclusionCulling.h, CullingThreadpool.h, FrameRecorder.h     the C++ interface
  *
  * Generated by cbindgen from src/capi: do not edit. SPDX-License-Identifier: Apache-2.0 OR MIT
  */
@@ -134,25 +136,25 @@ typedef struct MaskedOcclusionCulling MaskedOcclusionCulling;
 /**
  * The version of this interface: 1000 * major + minor of the library's version.
  *
- * Compare it with MOC_GetAbiVersion() to see that header and library belong together: before version
- * 1.0 they have to be equal, later the majors have to be equal and the library's minor at least the
- * header's.
+ * Compare it with MOC_GetAbiVersion() to check that header and library belong together: before version 1.0 they must
+ * be equal; from then on the major versions must be equal, and the library's minor version must be at least that of
+ * the header.
  */
 #define MOC_ABI_VERSION 2
 
 /**
- * As the `vertex_count` of a MOC_Mesh: the number is not known, and the indices are trusted.
+ * The `vertex_count` of a MOC_Mesh whose number of vertices is unknown: its indices are trusted.
  */
 #define MOC_UNCHECKED 4294967295
 
 /**
- * No answer is known, in recordings.
+ * In recordings: the answer is not known.
  */
 #define MOC_RESULT_UNKNOWN -1
 
 /**
- * What a call reports. Where it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the
- * function says otherwise.
+ * The result of a call. If it is not MOC_STATUS_OK, nothing was drawn, merged or changed, unless the function's
+ * documentation says otherwise.
  */
 enum MOC_Status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -160,29 +162,28 @@ enum MOC_Status
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Done.
+     * The call succeeded.
      */
     MOC_STATUS_OK = 0,
     /**
-     * A pointer that has to name something is null.
+     * A required pointer is null.
      */
     MOC_STATUS_NULL_POINTER = 1,
     /**
-     * An integer that stands for an enumeration or a flag has no meaning there.
+     * An integer is not a value of the enumeration or flag that it is passed for.
      */
     MOC_STATUS_INVALID_ENUM = 2,
     /**
-     * A width, height, bin count, triangle count, array length or rectangle is outside of what is accepted.
+     * A width, height, bin count, triangle count, array length or rectangle is out of range.
      */
     MOC_STATUS_INVALID_SIZE = 3,
     /**
-     * A number that has to be finite is not.
+     * A number that must be finite is not.
      */
     MOC_STATUS_INVALID_NUMBER = 4,
     /**
-     * A vertex layout has a negative stride or, where the length of the array is given, a negative
-     * offset; or a pointer is not a multiple of what it points to (4 bytes for indices and floats
-     * that are written, 8 for lists).
+     * A vertex layout has a negative stride or, if the length of the array is given, a negative offset; or a pointer
+     * is misaligned (indices and floats to be written must be aligned to 4 bytes, lists to 8).
      */
     MOC_STATUS_INVALID_LAYOUT = 5,
     /**
@@ -190,11 +191,11 @@ enum MOC_Status
      */
     MOC_STATUS_NO_BUFFER = 6,
     /**
-     * An index names a vertex that is not there.
+     * An index refers to a vertex that does not exist.
      */
     MOC_STATUS_INDEX_OUT_OF_RANGE = 7,
     /**
-     * The two buffers differ in resolution or in the direction of their rows.
+     * The two buffers differ in resolution or row direction.
      */
     MOC_STATUS_SIZE_MISMATCH = 8,
     /**
@@ -202,19 +203,19 @@ enum MOC_Status
      */
     MOC_STATUS_LIST_FULL = 9,
     /**
-     * The allocator returned nothing.
+     * An allocation failed.
      */
     MOC_STATUS_OUT_OF_MEMORY = 10,
     /**
-     * The library failed inside. Memory is intact, but the call did not finish.
+     * An internal error. Memory is intact, but the call did not finish.
      */
     MOC_STATUS_INTERNAL = 11,
     /**
-     * A recording's file cannot be made, written or read.
+     * The file of a recording cannot be created, written or read.
      */
     MOC_STATUS_FILE = 12,
     /**
-     * A file is no recording, or it is cut or broken.
+     * A file is not a recording, or it is truncated or corrupt.
      */
     MOC_STATUS_INVALID_RECORDING = 13,
     /**
@@ -232,7 +233,7 @@ typedef int32_t MOC_Status;
 #endif // __cplusplus
 
 /**
- * An instruction set. All of them give the same bits.
+ * An instruction set that the library is compiled for. All of them give the same bits.
  */
 enum MOC_Implementation
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -240,7 +241,7 @@ enum MOC_Implementation
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * No vector instructions by name: runs anywhere.
+     * Plain code without explicit vector instructions: runs anywhere.
      */
     MOC_SCALAR = -1,
     /**
@@ -277,7 +278,7 @@ typedef int32_t MOC_Implementation;
 #endif // __cplusplus
 
 /**
- * How a sub-tile takes in a triangle. Every rule is conservative; they differ in how much they keep.
+ * How a triangle is recorded in a sub-tile. Every rule is conservative; they differ in how much information they keep.
  */
 enum MOC_UpdateRule
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -285,7 +286,7 @@ enum MOC_UpdateRule
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * One reference depth and two working layers: accurate in nearly any scene and order. The default.
+     * One reference depth and two working layers: accurate in nearly every scene and order. The default.
      */
     MOC_UPDATE_RULE_THREE_LAYER = 0,
     /**
@@ -297,8 +298,8 @@ enum MOC_UpdateRule
      */
     MOC_UPDATE_RULE_ACCURATE = 2,
     /**
-     * One reference depth and three working layers: the most accurate, and the slowest. It pays where dense
-     * geometry is drawn in no order.
+     * One reference depth and three working layers: the most accurate rule, and the slowest. It pays off for dense
+     * geometry that is drawn unsorted.
      */
     MOC_UPDATE_RULE_FOUR_LAYER = 3,
 };
@@ -336,7 +337,7 @@ typedef int32_t MOC_YAxis;
 #endif // __cplusplus
 
 /**
- * Which triangles face away and are skipped, by their winding in normalised device coordinates (y up).
+ * Which triangles are back-facing and skipped, by their winding in normalised device coordinates (y up).
  */
 enum MOC_BackfaceWinding
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -344,15 +345,15 @@ enum MOC_BackfaceWinding
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * None: both sides count.
+     * None: both sides are drawn.
      */
     MOC_BACKFACE_NONE = 0,
     /**
-     * Clockwise triangles face away.
+     * Clockwise triangles are back-facing.
      */
     MOC_BACKFACE_CW = 1,
     /**
-     * Counter-clockwise triangles face away.
+     * Counter-clockwise triangles are back-facing.
      */
     MOC_BACKFACE_CCW = 2,
 };
@@ -365,7 +366,7 @@ typedef int32_t MOC_BackfaceWinding;
 #endif // __cplusplus
 
 /**
- * What a draw or a query found.
+ * The result of a draw or a query.
  */
 enum MOC_CullingResult
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -373,7 +374,7 @@ enum MOC_CullingResult
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * It may be seen.
+     * It may be visible.
      */
     MOC_VISIBLE = 0,
     /**
@@ -381,7 +382,7 @@ enum MOC_CullingResult
      */
     MOC_OCCLUDED = 1,
     /**
-     * It lies outside of the view, or faces away.
+     * It is outside the view, or back-facing.
      */
     MOC_VIEW_CULLED = 3,
 };
@@ -396,8 +397,9 @@ typedef int32_t MOC_CullingResult;
 /**
  * The frustum planes that a mesh may cross: flags, to be combined with `|`.
  *
- * Only MOC_CLIP_PLANE_NEAR changes anything: without it the near plane of the object is not applied
- * (what lies behind the eye is never drawn). Leaving out side planes is always safe and never faster.
+ * Only MOC_CLIP_PLANE_NEAR has an effect: without it the object's near plane is not applied (geometry behind the eye
+ * is always clipped). Omitting a side plane does not promise that the mesh stays inside it: it is always safe, and
+ * never faster.
  */
 enum MOC_ClipPlanes
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -446,7 +448,7 @@ typedef int32_t MOC_ClipPlanes;
 #endif // __cplusplus
 
 /**
- * What a recorded call is.
+ * The kind of a recorded call.
  */
 enum MOC_RecordedCallKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -479,7 +481,7 @@ typedef int32_t MOC_RecordedCallKind;
 #endif // __cplusplus
 
 /**
- * A recording that was read; see MOC_RecordingLoad.
+ * A recording in memory; see MOC_RecordingLoad.
  */
 typedef struct MOC_Recording MOC_Recording;
 
@@ -500,14 +502,15 @@ typedef struct MOC_Threadpool MOC_Threadpool;
 typedef void (*MOC_MessageCallback)(void *user, int32_t status, const char *message);
 
 /**
- * Allocates `size` bytes at a multiple of `alignment` (a power of two, `size` a multiple of it, as C11's aligned_alloc asks
- * for); null when there is no memory. Memory that is not aligned so is given back and counts as none. Called from any thread
- * that uses the object; must not throw, and must not use the object or the pool that draws into it.
+ * Allocates `size` bytes aligned to `alignment` (a power of two; `size` is a multiple of it, as C11's aligned_alloc
+ * requires). Returns null if there is no memory. Memory that is not aligned to `alignment` is freed and treated as an
+ * allocation failure. Called from any thread that uses the object; must not throw, and must not use the object or the
+ * pool that draws into it.
  */
 typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
 
 /**
- * Frees what the MOC_AlignedAlloc of the same object gave. Called from any thread; must not throw.
+ * Frees memory allocated by the MOC_AlignedAlloc of the same object. Called from any thread; must not throw.
  */
 typedef void (*MOC_AlignedFree)(void *ptr);
 
@@ -518,7 +521,8 @@ typedef void (*MOC_AlignedFree)(void *ptr);
 typedef void *(*MOC_CallAlloc)(MOC_AlignedAlloc alloc, size_t alignment, size_t size);
 
 /**
- * What an object is made with. Set `size`, let MOC_DefaultSettings fill in the rest, then change what matters.
+ * Settings of an object, fixed at creation. Set `size`, let MOC_DefaultSettings fill in the rest, then change what
+ * should differ.
  */
 typedef struct MOC_Settings {
     /**
@@ -526,8 +530,8 @@ typedef struct MOC_Settings {
      */
     uint32_t size;
     /**
-     * A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. On another
-     * architecture than the named one, anything but MOC_SCALAR permits the best that there is.
+     * A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. If it belongs to another
+     * architecture, anything but MOC_SCALAR allows the best available.
      */
     int32_t implementation;
     /**
@@ -539,33 +543,33 @@ typedef struct MOC_Settings {
      */
     int32_t y_axis;
     /**
-     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which costs a tenth of the time of a draw. 0: only
-     * MOC_GetDroppedTriangles counts. Default 0.
+     * 0 or 1. 1: draws and queries are counted for MOC_GetStatistics, which makes draws about a tenth slower. 0: only
+     * dropped triangles are counted (MOC_GetDroppedTriangles). Default 0.
      */
     int32_t statistics;
     /**
-     * Where the memory of the object and of its buffer comes from; a recording and a pool take theirs from the
-     * system. Null, together with `free`: the system. Default null.
+     * Allocates the memory of the object and its buffer; recordings and pools use the system's allocator. Null,
+     * together with `free`: the system's allocator. Default null.
      */
     MOC_AlignedAlloc alloc;
     /**
-     * Takes back what `alloc` gave. Null exactly when `alloc` is.
+     * Frees the memory that `alloc` returned. Null if and only if `alloc` is.
      */
     MOC_AlignedFree free;
     /**
-     * Calls `alloc` on the library's behalf, when the call must be guarded. Null: the library calls it directly. Ignored if
+     * Calls `alloc` for the library, for allocators that throw. Null: the library calls `alloc` directly. Ignored if
      * `alloc` is null. Default null.
      */
     MOC_CallAlloc call_alloc;
 } MOC_Settings;
 
 /**
- * Where x, y and w (or z, when a matrix is given) of a vertex lie, in bytes.
+ * Where x, y and w (with a matrix: x, y and z) of a vertex are stored, in bytes.
  *
- * Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a
- * matrix is (12, 4, 8); a structure of arrays of n is (4, 4 * n, 8 * n); positions among other things are
- * (sizeof(vertex), 4, 8) with a matrix, and a pointer to the first x. Nothing has to be aligned. Offsets may be negative,
- * but for the functions whose names end in Checked.
+ * Packed x, y, z, w is (16, 4, 12) without a matrix and (16, 4, 8) with one; packed x, y, z with a matrix is (12, 4,
+ * 8); a structure of arrays of n vertices is (4, 4 * n, 8 * n); positions inside a larger vertex are (sizeof(vertex),
+ * 4, 8) with a matrix, and a pointer to the first x. No alignment is required. Offsets may be negative, except for the
+ * functions whose names end in Checked.
  */
 typedef struct MOC_VertexLayout {
     /**
@@ -577,17 +581,18 @@ typedef struct MOC_VertexLayout {
      */
     int32_t offset_y;
     /**
-     * Bytes from x to w; with a matrix, from x to z.
+     * Bytes from x to w; with a matrix, to z.
      */
     int32_t offset_zw;
 } MOC_VertexLayout;
 
 /**
- * Triangles to be drawn, tested, binned or recorded. Zero the struct, then set `size` and what the mesh has.
+ * Triangles to be drawn, tested, binned or recorded. Zero the struct, then set `size` and the fields that the mesh
+ * needs.
  *
- * Every vertex below `vertex_count` has to be readable: its x, y and w (or z), and all between in vertices of 12 or 16 bytes
- * with y at 4 and w (or z) at 8 or 12. With MOC_UNCHECKED that holds for every vertex from the lowest to the highest index,
- * whether or not an index names it.
+ * Every vertex below `vertex_count` must be readable: its x, y and w (or z), and for vertices of 12 or 16 bytes with y
+ * at 4 and w (or z) at 8 or 12, also everything in between. With MOC_UNCHECKED this applies to every vertex from the
+ * lowest to the highest index, whether or not an index refers to it.
  */
 typedef struct MOC_Mesh {
     /**
@@ -595,7 +600,7 @@ typedef struct MOC_Mesh {
      */
     uint32_t size;
     /**
-     * Bytes of an index: 4, or 0, which means 4.
+     * Size of an index in bytes: 4, or 0, which also means 4.
      */
     uint32_t index_size;
     /**
@@ -607,11 +612,11 @@ typedef struct MOC_Mesh {
      */
     const void *indices;
     /**
-     * How many vertices there are: an index that is not below is refused. MOC_UNCHECKED: indices are trusted.
+     * Number of vertices: a mesh with an index that is not below it is refused. MOC_UNCHECKED: indices are trusted.
      */
     uint32_t vertex_count;
     /**
-     * How many triangles, 0 to INT32_MAX.
+     * Number of triangles, 0 to INT32_MAX.
      */
     uint32_t triangle_count;
     /**
@@ -619,42 +624,43 @@ typedef struct MOC_Mesh {
      */
     const float *model_to_clip;
     /**
-     * Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. With a matrix the last
-     * offset names z, without one w. Offsets may be negative.
+     * Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. The last offset is
+     * that of z with a matrix, of w without one. Offsets may be negative.
      */
     const struct MOC_VertexLayout *layout;
     /**
-     * A MOC_BackfaceWinding, of the triangle as it is seen on the screen. Zero is MOC_BACKFACE_NONE: both sides count.
+     * A MOC_BackfaceWinding, of the triangle as seen on the screen. Zero is MOC_BACKFACE_NONE: both sides are drawn.
      */
     int32_t winding;
     /**
-     * MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right; zero is MOC_CLIP_PLANE_NONE.
+     * MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always correct; zero is MOC_CLIP_PLANE_NONE.
      */
     int32_t clip_planes;
 } MOC_Mesh;
 
 /**
- * A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it,
- * MOC_RenderTrilist draws it.
+ * A list of projected triangles in memory that the caller owns. MOC_BinTriangles appends to it, and MOC_RenderTrilist
+ * draws it.
  */
 typedef struct MOC_TriList {
     /**
-     * How many triangles `data` can hold.
+     * Number of triangles for which `data` has room.
      */
     uint32_t capacity;
     /**
-     * How many it holds. Set it to 0 to start over.
+     * Number of triangles in the list. Set it to 0 to start over.
      */
     uint32_t count;
     /**
-     * 9 floats a triangle, of use to MOC_RenderTrilist only: x and y in 1/256 pixel and 1/w, of three corners.
+     * 9 floats per triangle, in a form meant only for MOC_RenderTrilist: x and y in 1/256 pixel, and 1/w, of the three
+     * corners.
      */
     float *data;
 } MOC_TriList;
 
 /**
- * A rectangle of pixels, rows counted in the object's y direction. x in multiples of 32, y of 8; a
- * maximum may also be the width or height of the buffer, or that rounded up to the next multiple.
+ * A rectangle of pixels: `min` inclusive, `max` exclusive. x is in multiples of 32, y of 8; a `max` may also be the
+ * width or height of the buffer, as is or rounded up to whole tiles. Rows are counted in the object's y direction.
  */
 typedef struct MOC_ScissorRect {
     /**
@@ -676,7 +682,7 @@ typedef struct MOC_ScissorRect {
 } MOC_ScissorRect;
 
 /**
- * Counts of what draws did since the object was made.
+ * Statistics of all draws since the object was created.
  */
 typedef struct MOC_OccluderStatistics {
     /**
@@ -684,12 +690,12 @@ typedef struct MOC_OccluderStatistics {
      */
     int64_t num_processed_triangles;
     /**
-     * Those that face the eye and whose bounding box holds a pixel centre on the screen; counted when binned
-     * and again in each list drawn.
+     * Those that are front-facing and whose bounds contain a pixel centre on the screen: counted when they are binned,
+     * and again for each list that is drawn.
      */
     int64_t num_rasterized_triangles;
     /**
-     * 32x8 tiles in the bounding boxes of such triangles when drawn, for a list inside of the rectangle.
+     * 32x8 tiles in the bounds of such triangles when they are drawn; for a list, only tiles inside the rectangle.
      */
     int64_t num_tiles_traversed;
     /**
@@ -703,7 +709,7 @@ typedef struct MOC_OccluderStatistics {
 } MOC_OccluderStatistics;
 
 /**
- * Counts of what queries did since the object was made.
+ * Statistics of all queries since the object was created.
  */
 typedef struct MOC_OccludeeStatistics {
     /**
@@ -711,22 +717,22 @@ typedef struct MOC_OccludeeStatistics {
      */
     int64_t num_processed_rectangles;
     /**
-     * Triangles submitted to be tested.
+     * Triangles submitted to be tested (including those after the first visible one).
      */
     int64_t num_processed_triangles;
     /**
-     * Those of them that were compared with the buffer, up to the first visible one.
+     * Those of them that were compared with the buffer, up to the first that may be visible.
      */
     int64_t num_rasterized_triangles;
     /**
-     * Tiles that rectangles were compared with sub-tile by sub-tile, and those in the bounding boxes of such triangles.
+     * Tiles whose sub-tiles were compared with a rectangle, and those in the bounds of such triangles.
      */
     int64_t num_tiles_traversed;
 } MOC_OccludeeStatistics;
 
 /**
- * All counts of an object, if its settings ask for statistics; otherwise zeros. The same on every instruction set. Triangles
- * that are dropped are counted in either case, for MOC_GetDroppedTriangles.
+ * All counts of an object, if its settings enable statistics; otherwise zeros. The same on every instruction set.
+ * Dropped triangles are always counted, for MOC_GetDroppedTriangles.
  */
 typedef struct MOC_Statistics {
     /**
@@ -734,15 +740,15 @@ typedef struct MOC_Statistics {
      */
     uint32_t size;
     /**
-     * 0.
+     * Always 0.
      */
     uint32_t reserved;
     /**
-     * Of draws.
+     * Counts of draws.
      */
     struct MOC_OccluderStatistics occluders;
     /**
-     * Of queries.
+     * Counts of queries.
      */
     struct MOC_OccludeeStatistics occludees;
 } MOC_Statistics;
@@ -789,7 +795,7 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t external_threads;
     /**
-     * 0.
+     * Must be 0.
      */
     uint32_t reserved;
     /**
@@ -807,7 +813,7 @@ typedef struct MOC_ThreadpoolSettings {
 } MOC_ThreadpoolSettings;
 
 /**
- * What a recording begins with.
+ * The header of a recording.
  */
 typedef struct MOC_RecordingInfo {
     /**
@@ -819,15 +825,15 @@ typedef struct MOC_RecordingInfo {
      */
     float near_clip_plane;
     /**
-     * In pixels.
+     * Width of the buffer in pixels.
      */
     uint32_t width;
     /**
-     * In pixels.
+     * Height of the buffer in pixels.
      */
     uint32_t height;
     /**
-     * How many calls were recorded.
+     * Number of recorded calls.
      */
     uint32_t num_calls;
 } MOC_RecordingInfo;
@@ -845,20 +851,20 @@ typedef struct MOC_RecordedCall {
      */
     int32_t kind;
     /**
-     * The MOC_CullingResult that was answered, or MOC_RESULT_UNKNOWN.
+     * The MOC_CullingResult that the call returned, or MOC_RESULT_UNKNOWN.
      */
     int32_t result;
     /**
-     * Of rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Zeros otherwise.
+     * For rectangles: x_min, y_min, x_max, y_max in normalised device coordinates, and w_min. Otherwise zeros.
      */
     float rect[5];
     /**
-     * Of draws and tests of triangles: their mesh, which MOC_RenderMesh and MOC_TestMesh take. Null otherwise. It stays right
-     * until the recording is destroyed.
+     * For draws and tests of triangles: the mesh, for MOC_RenderMesh and MOC_TestMesh. Otherwise null. Valid until the
+     * recording is destroyed.
      */
     const struct MOC_Mesh *mesh;
     /**
-     * How many floats there are from `mesh->vertices` on.
+     * Number of floats from `mesh->vertices` on.
      */
     size_t vertex_floats;
 } MOC_RecordedCall;
@@ -873,7 +879,7 @@ extern "C" {
 uint32_t MOC_GetAbiVersion(void);
 
 /**
- * A status in English, for logs. Never null; the text lives as long as the library is loaded.
+ * An English text for a status, for logs. Never null; valid as long as the library is loaded.
  */
 const char *MOC_StatusText(int32_t status);
 
@@ -899,8 +905,8 @@ MOC_Status MOC_SetMessageCallback(MOC_MessageCallback callback,
 int32_t MOC_GetLastStatus(void);
 
 /**
- * Writes the default settings to `out`: those that MOC_Create takes for null. `out->size` is sizeof(MOC_Settings), set by the
- * caller, and stays.
+ * Writes the default settings to `out`: those that MOC_Create uses if its `settings` are null. The caller sets
+ * `out->size` to sizeof(MOC_Settings) before the call; it is not changed.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
@@ -910,23 +916,23 @@ int32_t MOC_GetLastStatus(void);
 MOC_Status MOC_DefaultSettings(struct MOC_Settings *out);
 
 /**
- * Makes an object without a buffer, on the best instruction set that the processor has and `settings`
- * allow, and writes it to `out` (null there on errors). `settings` may be null: the defaults. They are copied. The
- * caller gives the object back to MOC_Destroy.
+ * Creates an object without a buffer and writes it to `out` (null on errors). It uses the best instruction set that
+ * the processor supports and `settings` allow. `settings` are copied; null means the defaults. The caller destroys the
+ * object with MOC_Destroy.
  *
- * Errors: MOC_STATUS_NULL_POINTER (`out`, or one of the two callbacks is null), MOC_STATUS_INVALID_SIZE for a `size` that is too
- * small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
+ * Errors: MOC_STATUS_NULL_POINTER (if `out` is null, or only one of `alloc` and `free`), MOC_STATUS_INVALID_SIZE for a
+ * `size` that is too small, MOC_STATUS_INVALID_ENUM, MOC_STATUS_OUT_OF_MEMORY.
  *
  * Required:
- * `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The callbacks do what
- * MOC_AlignedAlloc and MOC_AlignedFree say until the object is destroyed.
+ * `settings` is null or can be read for the number of bytes given in its `size`, `out` is null or can be written. The
+ * callbacks behave as documented for MOC_AlignedAlloc and MOC_AlignedFree until the object is destroyed.
  */
 MOC_Status MOC_Create(const struct MOC_Settings *settings,
                       MaskedOcclusionCulling **out);
 
 /**
- * Frees the object and its buffer, and ends its recording. A pool that draws into it first draws what was submitted, and has
- * no object afterwards. Null is allowed.
+ * Frees the object and its buffer, and ends its recording. If a pool draws into the object, it first draws everything
+ * submitted, and has no object afterwards. Null is allowed.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; nobody uses it any more.
@@ -934,16 +940,17 @@ MOC_Status MOC_Create(const struct MOC_Settings *settings,
 MOC_Status MOC_Destroy(MaskedOcclusionCulling *moc);
 
 /**
- * Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. The size that it has
- * already is a clear. Of 8x4 pixels it keeps 20 bytes (12 with MOC_UPDATE_RULE_QUICK and MOC_UPDATE_RULE_ACCURATE, 28 with
- * MOC_UPDATE_RULE_FOUR_LAYER).
+ * Gives the object a buffer of `width` by `height` pixels, each from 1 to 16384, and clears it. If the size does not
+ * change, the buffer is only cleared. Each sub-tile of 8x4 pixels takes 20 bytes (12 with MOC_UPDATE_RULE_QUICK and
+ * MOC_UPDATE_RULE_ACCURATE, 28 with MOC_UPDATE_RULE_FOUR_LAYER).
  *
- * It need not be the screen's size. Fewer pixels take less time and cull less; and as an occluder covers the pixels whose
- * centres are inside, a gap between occluders that is narrower than a pixel of the buffer may be closed.
+ * The buffer may be smaller than the screen: that is faster and culls less. But MOC_OCCLUDED then means hidden at the
+ * buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the
+ * screen shows through it. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen pixels can close.
+ * docs/guide.md says what to do about it.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is drawing into
- * the object. The object keeps
- * the buffer that it had.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is
+ * drawing into the object. On an error the object keeps its old buffer.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
@@ -964,12 +971,12 @@ MOC_Status MOC_SetResolution(MaskedOcclusionCulling *moc,
 MOC_Status MOC_GetResolution(const MaskedOcclusionCulling *moc, uint32_t *width, uint32_t *height);
 
 /**
- * Writes the size in pixels of each of `bins_w` by `bins_h` bins: the buffer's width divided by `bins_w`,
- * rounded down to 32, and its height divided by `bins_h`, rounded down to 8. The last column and row of
- * bins reach to the buffer's edge.
+ * Writes the size in pixels of a bin when the buffer is divided into `bins_w` by `bins_h` bins: the buffer's width
+ * divided by `bins_w`, rounded down to a multiple of 32, and its height divided by `bins_h`, rounded down to a
+ * multiple of 8. The last column and row of bins extend to the buffer's edge.
  *
- * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER, and MOC_STATUS_INVALID_SIZE for no bins or bins
- * smaller than 32 by 8: 0 by 0 is written.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_NO_BUFFER; MOC_STATUS_INVALID_SIZE if a bin count is 0 or bins would be
+ * smaller than 32 by 8. After the last two, 0 by 0 is written.
  *
  * Required:
  * As MOC_GetResolution.
@@ -981,12 +988,12 @@ MOC_Status MOC_ComputeBinWidthHeight(const MaskedOcclusionCulling *moc,
                                      uint32_t *height);
 
 /**
- * Sets the near plane, in clip-space w, for calls that have MOC_CLIP_PLANE_NEAR among their clip planes: what is nearer is
- * cut off. With 0, the default, and all below 2^-30, only what lies behind the eye is, and occludees that reach there are
- * visible. So the camera's own near plane culls more.
+ * Sets the near plane, in clip-space w, for calls whose clip planes include MOC_CLIP_PLANE_NEAR: geometry nearer than
+ * the plane is clipped. With 0, the default, or any value below 2^-30, only geometry behind the eye is clipped, and
+ * occludees that reach behind it count as visible; so passing the camera's own near plane culls more.
  *
- * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity: the plane stays where
- * it was.
+ * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_NUMBER for NaN or an infinity, in which case the plane does not
+ * change.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile.
@@ -1037,8 +1044,8 @@ MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
 MOC_Status MOC_Flush(const MaskedOcclusionCulling *moc);
 
 /**
- * Writes the callbacks that the object was made with; where none were given, a pair that uses the system's
- * allocator. They can be called, and given to other objects, also after this one is destroyed. Neither pointer
+ * Writes the callbacks that the object was created with or, if there were none, a pair that uses the system's
+ * allocator. They may still be called, and passed to other objects, after this object is destroyed. Neither pointer
  * may be null.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
@@ -1052,7 +1059,8 @@ MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
                                     MOC_AlignedFree *free);
 
 /**
- * Sets every pixel infinitely far: the first call of a frame. It writes little more than four bytes for each 32x8 pixels.
+ * Clears every pixel to infinitely far: the first call of a frame. It writes little more than four bytes per 32x8
+ * tile.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
  *
@@ -1062,9 +1070,9 @@ MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
 MOC_Status MOC_ClearBuffer(MaskedOcclusionCulling *moc);
 
 /**
- * Folds the buffer of `other` into that of `moc`: afterwards it hides what either hid, but for what does not fit
- * into its few depths, and never more. `other` stays as it is. The two have the same resolution and MOC_YAxis, and may
- * differ in instruction set and update rule. Merging an object with itself changes nothing.
+ * Merges the buffer of `other` into that of `moc`: afterwards `moc` hides what either of them hid, except for what its
+ * few depths cannot represent, and never more. `other` is not changed. The two must have the same resolution and
+ * MOC_YAxis; they may differ in instruction set and update rule. Merging an object with itself changes nothing.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
  * either.
@@ -1077,10 +1085,10 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc,
                            const MaskedOcclusionCulling *other);
 
 /**
- * Folds the buffers of `count` other objects into that of `moc`: the same bits as MOC_MergeBuffer one by one in that order, but
- * faster. Where `others` names `moc` itself, that changes nothing.
+ * Merges the buffers of `count` other objects into that of `moc`: the same bits as calling MOC_MergeBuffer for each of
+ * them in that order, but faster. If `moc` itself is among `others`, that entry changes nothing.
  *
- * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array: nothing is folded.
+ * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array. On an error nothing is merged.
  *
  * Required:
  * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
@@ -1091,22 +1099,24 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
                             uint32_t count);
 
 /**
- * Draws occluders: from now on they hide what is behind them. Nearest first is fastest and hides most.
+ * Draws occluders: from now on they hide what is behind them. Front-to-back order is fastest and hides most.
  *
- * - `vertices`: the x of the first vertex, at any address. Null is allowed when there are no triangles.
- * - `triangles`: three indices a triangle. Null is allowed when there are none.
- * - `n_triangles`: how many triangles, 0 or more.
- * - `model_to_clip`: 16 floats m that take x, y, z of the model to clip space: x' = x*m[0] + y*m[4] + z*m[8] + m[12],
- *   y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. That is the memory
- *   of OpenGL's matrices and of Direct3D's (docs/conventions.md). Null: the vertices are in clip space.
- * - `winding`: a MOC_BackfaceWinding, of the triangle as it is seen on the screen.
- * - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always right.
- * - `layout`: where the coordinates are. Null: (16, 4, 12), x, y, z, w packed. With a matrix the last offset names z
- *   instead of w, so that null does not fit: pass (12, 4, 8) for x, y, z, (16, 4, 8) for x, y, z and a fourth.
- * - `result`: null is allowed. Gets MOC_VIEW_CULLED when every triangle lies outside of the view, faces away or is
- *   dropped, or there is none; else MOC_VISIBLE.
+ * - `vertices`: the x of the first vertex, at any address. May be null if there are no triangles.
+ * - `triangles`: three indices per triangle. May be null if there are no triangles.
+ * - `n_triangles`: the number of triangles, 0 or more.
+ * - `model_to_clip`: 16 floats m that transform the model's x, y, z to clip space: x' = x*m[0] + y*m[4] + z*m[8] +
+ *   m[12], y' with m[1] m[5] m[9] m[13], w' with m[3] m[7] m[11] m[15]; m[2] m[6] m[10] m[14] are not used. OpenGL and
+ *   Direct3D store their matrices in this order (docs/conventions.md). Null: the vertices are in clip space.
+ * - `winding`: a MOC_BackfaceWinding, of the triangle as seen on the screen.
+ * - `clip_planes`: MOC_ClipPlanes. MOC_CLIP_PLANE_ALL is always correct.
+ * - `layout`: where the coordinates are. Null: (16, 4, 12), packed x, y, z, w. With a matrix the last offset is that
+ *   of z instead of w, so null is wrong: pass (12, 4, 8) for packed x, y, z, or (16, 4, 8) for x, y, z and a fourth
+ *   float.
+ * - `result`: may be null. Receives MOC_VIEW_CULLED if every triangle is outside the view, back-facing or dropped, or
+ *   if there are none; otherwise MOC_VISIBLE.
  *
- * Triangles with a NaN or infinite coordinate, or a corner farther than 2^40, are dropped and counted in the statistics.
+ * Triangles with a NaN, an infinite coordinate, or a corner farther than 2^40 are dropped; MOC_GetDroppedTriangles
+ * counts them.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
  * or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
@@ -1116,7 +1126,7 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
  * matrix and the layout can be read, and so can every vertex from the lowest to the highest index of the call,
  * whether or not an index names it: its x, y and w (or z), and all between in vertices of 12 or 16 bytes with
- * y at 4 and w (or z) at 8 or 12. MOC_RenderTrianglesChecked is for indices that are not known to be right.
+ * y at 4 and w (or z) at 8 or 12. For untrusted indices use MOC_RenderTrianglesChecked.
  */
 MOC_Status MOC_RenderTriangles(MaskedOcclusionCulling *moc,
                                const float *vertices,
@@ -1129,11 +1139,11 @@ MOC_Status MOC_RenderTriangles(MaskedOcclusionCulling *moc,
                                int32_t *result);
 
 /**
- * As MOC_RenderTriangles, with the length of the vertex array, counted in floats from `vertices` on: an index that names a
- * vertex that does not lie whole within it is an error, and nothing is drawn.
+ * As MOC_RenderTriangles, with the length of the vertex array in floats, counted from `vertices`: an index of a vertex
+ * that is not entirely inside the array is an error, and nothing is drawn.
  *
- * Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT for a
- * negative offset too.
+ * Errors: as MOC_RenderTriangles, MOC_STATUS_INDEX_OUT_OF_RANGE, and MOC_STATUS_INVALID_LAYOUT also for a negative
+ * offset.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `vertices` can be
@@ -1151,9 +1161,10 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
                                       int32_t *result);
 
 /**
- * MOC_RenderTriangles or MOC_RenderTrianglesChecked of a mesh that a struct describes.
+ * MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
  *
- * Errors: as there; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or a
+ * Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small
+ * or a
  * `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
  *
  * Required:
@@ -1165,17 +1176,17 @@ MOC_Status MOC_RenderMesh(MaskedOcclusionCulling *moc,
                           int32_t *result);
 
 /**
- * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list stays as it is. It is of
- * use to objects of the resolution and MOC_YAxis of the one that filled it.
+ * Draws a list that MOC_BinTriangles filled, inside `scissor` (null: everywhere). The list is not changed. It may be
+ * drawn into any object with the same resolution and MOC_YAxis as the one that filled it.
  *
- * The rectangle's x are multiples of 32 and its y of 8; max_x may also be the width of the buffer, or that
- * rounded up to 32, and max_y the height, or that rounded up to 8. Several threads may call it at once for one
- * object, on rectangles that do not overlap: each tile of 32x8 pixels belongs to one of them.
+ * The rectangle's x must be multiples of 32 and its y multiples of 8; max_x may also be the width of the buffer, or
+ * that rounded up to a multiple of 32, and max_y the height, or that rounded up to a multiple of 8. Several threads
+ * may draw into one object at once, in rectangles that do not overlap, so that each 32x8 tile belongs to one thread.
  *
- * Errors: MOC_STATUS_NULL_POINTER (also for a list without `data` that is not empty), MOC_STATUS_NO_BUFFER,
- * MOC_STATUS_BUSY while a pool is drawing into the object,
- * MOC_STATUS_INVALID_SIZE for another rectangle, of which nothing is drawn, or a list whose `count` is above
- * its `capacity` or what memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is misaligned.
+ * Errors: MOC_STATUS_NULL_POINTER (also for a list that is not empty but has no `data`), MOC_STATUS_NO_BUFFER,
+ * MOC_STATUS_BUSY while a pool is drawing into the object, MOC_STATUS_INVALID_SIZE for any other rectangle or for a
+ * list whose `count` is above its `capacity` or larger than memory can hold; MOC_STATUS_INVALID_LAYOUT if `list` is
+ * misaligned. On an error nothing is drawn.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed. Meanwhile no other thread draws into an overlapping
@@ -1187,21 +1198,22 @@ MOC_Status MOC_RenderTrilist(const MaskedOcclusionCulling *moc,
                              const struct MOC_ScissorRect *scissor);
 
 /**
- * Tests occludees: would any part of these triangles, drawn now, be nearer than what was drawn, or at the
+ * Tests occludees: if these triangles were drawn now, would any part of them be nearer than what was drawn, or at the
  * same depth?
  *
- * The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only
- * those whose centre it covers. `result` (null is allowed) gets a MOC_CullingResult: MOC_VIEW_CULLED when no
- * triangle that faces the eye touches a pixel, or there is none (MOC_OCCLUDED, too, where all pixels around those that
- * touch none are behind what was drawn); MOC_VISIBLE also for triangles with a NaN or infinite
- * coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
+ * The arguments are those of MOC_RenderTriangles. Every pixel that a triangle touches counts, not only those whose
+ * centre it covers. `result` (may be null) receives a MOC_CullingResult. It is MOC_VIEW_CULLED if no front-facing
+ * triangle touches a pixel, or if there are no triangles; MOC_OCCLUDED is also possible for triangles that touch no
+ * pixel, if all the pixels around them are behind what was drawn. It is MOC_VISIBLE also for triangles with a NaN, an
+ * infinite coordinate or a corner farther than 2^40, and on errors. Several threads may test at once.
  *
- * The answer is for the triangles, not for what they enclose. Of a box around an object that reaches through the near plane
- * or holds the eye, the faces may face away, or be hidden while the object is not: take such a box for visible. Where the
- * near plane is 0, or MOC_CLIP_PLANE_NEAR is left out, triangles that reach behind the eye within the view are MOC_VISIBLE.
+ * The answer is for the triangles, not for what they enclose. If the bounding box of an object crosses the near plane
+ * or contains the eye, its faces may be back-facing, or hidden although the object is not: treat such an object as
+ * visible. If the near plane is 0 or MOC_CLIP_PLANE_NEAR is omitted, triangles that reach behind the eye within the
+ * view are MOC_VISIBLE.
  *
- * Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes through the
- * pool.
+ * Errors: as MOC_RenderTriangles, except MOC_STATUS_BUSY: while a pool is drawing into the object, the query goes
+ * through the pool.
  *
  * Required:
  * As MOC_RenderTriangles, every vertex from the lowest to the highest index included, but other threads may
@@ -1218,8 +1230,8 @@ MOC_Status MOC_TestTriangles(const MaskedOcclusionCulling *moc,
                              int32_t *result);
 
 /**
- * As MOC_TestTriangles, with the length of the vertex array in floats: an index that names a vertex outside
- * of it is an error.
+ * As MOC_TestTriangles, with the length of the vertex array in floats: an index of a vertex that is not entirely
+ * inside the array is an error.
  *
  * Errors: as MOC_RenderTrianglesChecked.
  *
@@ -1238,7 +1250,7 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
                                     int32_t *result);
 
 /**
- * MOC_TestTriangles or MOC_TestTrianglesChecked of a mesh that a struct describes.
+ * MOC_TestTriangles or MOC_TestTrianglesChecked for a mesh described by a struct.
  *
  * Errors: as MOC_RenderMesh, except MOC_STATUS_BUSY.
  *
@@ -1248,16 +1260,16 @@ MOC_Status MOC_TestTrianglesChecked(const MaskedOcclusionCulling *moc,
 MOC_Status MOC_TestMesh(const MaskedOcclusionCulling *moc, const struct MOC_Mesh *mesh, int32_t *result);
 
 /**
- * Tests a rectangle on the screen, such as that around an object's box. docs/conventions.md has the code that makes one of
- * a box.
+ * Tests a rectangle on the screen, such as the bounds of an object's box. docs/conventions.md has code that computes
+ * one from a box.
  *
- * - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever the
- *   MOC_YAxis). They may lie off screen, infinities included. Every pixel that is touched counts.
- * - `wmin`: the clip-space w of the nearest point. Where the object reaches through the near plane, pass 0.
- * - `result`: not null. MOC_VIEW_CULLED when the rectangle lies off screen; MOC_OCCLUDED when all of it is behind what was
- *   drawn; else, and at the same depth, MOC_VISIBLE. MOC_VISIBLE, too, when a number is NaN, `wmin` is not positive or
- *   a minimum is above its maximum, and on errors. NaN and such a minimum are reported to the callback of
- *   MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
+ * - `xmin`, `ymin`, `xmax`, `ymax`: in normalised device coordinates (x right, y up, the screen is -1 to 1, whatever
+ *   the MOC_YAxis). They may be off screen or infinite. Every pixel that is touched counts.
+ * - `wmin`: the clip-space w of the nearest point. Pass 0 if the object crosses the near plane.
+ * - `result`: not null. MOC_VIEW_CULLED if the rectangle is off screen; MOC_OCCLUDED if all of it is behind what was
+ *   drawn; otherwise, and at the same depth, MOC_VISIBLE. Also MOC_VISIBLE if a number is NaN, if `wmin` is not
+ *   positive, if a minimum is above its maximum, and on errors. A NaN and a minimum above its maximum are reported to
+ *   the callback of MOC_SetMessageCallback, although the status is MOC_STATUS_OK.
  *
  * Several threads may test at once.
  *
@@ -1276,13 +1288,12 @@ MOC_Status MOC_TestRect(const MaskedOcclusionCulling *moc,
                         int32_t *result);
 
 /**
- * Writes the depth (1/w) of every pixel to `out`, width times height floats, row by row in the object's y
- * direction; negative where nothing was drawn. `flip_y` 1 writes the last row first, 0 the first. The
- * depths are those that tests compare with, never nearer than what was drawn.
+ * Writes the depth (1/w) of every pixel to `out`: width times height floats, row by row in the object's y direction,
+ * negative where nothing was drawn. `flip_y` is 1 to write the last row first, 0 to write the first row first. These
+ * are the depths that tests compare with, never nearer than what was drawn.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object,
- * MOC_STATUS_INVALID_ENUM for another `flip_y`,
- * MOC_STATUS_INVALID_LAYOUT where `out` is not at a multiple of 4 bytes.
+ * MOC_STATUS_INVALID_ENUM for any other `flip_y`, MOC_STATUS_INVALID_LAYOUT if `out` is not aligned to 4 bytes.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is
@@ -1295,7 +1306,7 @@ MOC_Status MOC_ComputePixelDepthBuffer(const MaskedOcclusionCulling *moc,
 /**
  * As MOC_ComputePixelDepthBuffer, with the length of `out` in floats.
  *
- * Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE where `out` is too short.
+ * Errors: as MOC_ComputePixelDepthBuffer, and MOC_STATUS_INVALID_SIZE if `out` is too short.
  *
  * Required:
  * As MOC_ComputePixelDepthBuffer, where `out` can be written for `out_floats` floats.
@@ -1306,8 +1317,8 @@ MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
                                               int32_t flip_y);
 
 /**
- * Writes what was counted since the object was made; nothing sets the counts back. `out->size` is sizeof(MOC_Statistics), set by
- * the caller.
+ * Writes the counts since the object was created; they are never reset. The caller sets `out->size` to
+ * sizeof(MOC_Statistics) before the call.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
@@ -1332,18 +1343,18 @@ MOC_Status MOC_GetDroppedTriangles(const MaskedOcclusionCulling *moc,
                                    int64_t *out);
 
 /**
- * Projects triangles and appends each that may be drawn to the list of every bin that it reaches, to be
- * drawn by MOC_RenderTrilist. Nothing is drawn.
+ * Projects triangles and appends each one that may be drawn to the list of every bin that it overlaps, to be drawn
+ * later by MOC_RenderTrilist. Nothing is drawn.
  *
- * `lists` are `bins_w` times `bins_h` lists, row by row, which the caller has given memory and a `count`, 0 at first; the
- * bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of MOC_RenderTriangles. `result` (null is
- * allowed) gets MOC_VIEW_CULLED when no triangle may be drawn, else MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may
- * bin at once, into lists of their own.
+ * `lists` is an array of `bins_w` times `bins_h` lists, row by row; the caller has set their `data`, `capacity` and
+ * `count` (0 at first). The bins are those of MOC_ComputeBinWidthHeight. The other arguments are those of
+ * MOC_RenderTriangles. `result` (may be null) receives MOC_VIEW_CULLED if no triangle may be drawn, otherwise
+ * MOC_VISIBLE; on errors MOC_VISIBLE. Several threads may bin at once, each into its own lists.
  *
- * Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with
- * a capacity and no `data`; MOC_STATUS_INVALID_LAYOUT also where `lists` is not at a multiple of its
- * alignment; MOC_STATUS_INVALID_SIZE also for a capacity larger than memory can hold: nothing is binned. MOC_STATUS_LIST_FULL:
- * a list ran out of room; what fitted is in the lists.
+ * Errors: as MOC_RenderTriangles and MOC_ComputeBinWidthHeight; MOC_STATUS_NULL_POINTER also for a list with a
+ * capacity but no `data`; MOC_STATUS_INVALID_LAYOUT also if `lists` is misaligned; MOC_STATUS_INVALID_SIZE also for a
+ * capacity larger than memory can hold. In all these cases nothing is binned. MOC_STATUS_LIST_FULL: a list is full;
+ * the triangles that fitted are in the lists.
  *
  * Required:
  * As MOC_TestTriangles, every vertex from the lowest to the highest index included. `lists` is null or can be
@@ -1364,8 +1375,8 @@ MOC_Status MOC_BinTriangles(const MaskedOcclusionCulling *moc,
                             int32_t *result);
 
 /**
- * As MOC_BinTriangles, with the length of the vertex array in floats: an index that names a vertex outside
- * of it is an error, and nothing is binned.
+ * As MOC_BinTriangles, with the length of the vertex array in floats: an index of a vertex that is not entirely inside
+ * the array is an error, and nothing is binned.
  *
  * Errors: as MOC_BinTriangles and MOC_RenderTrianglesChecked.
  *
@@ -1387,9 +1398,9 @@ MOC_Status MOC_BinTrianglesChecked(const MaskedOcclusionCulling *moc,
                                    int32_t *result);
 
 /**
- * MOC_BinTriangles or MOC_BinTrianglesChecked of a mesh that a struct describes.
+ * MOC_BinTriangles or MOC_BinTrianglesChecked for a mesh described by a struct.
  *
- * Errors: as there and as MOC_RenderMesh.
+ * Errors: as those and as MOC_RenderMesh.
  *
  * Required:
  * As MOC_TestMesh. `lists` is null or can be written for `bins_w` times `bins_h` lists, and the `data` of each for
@@ -1403,14 +1414,14 @@ MOC_Status MOC_BinMesh(const MaskedOcclusionCulling *moc,
                        int32_t *result);
 
 /**
- * Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and
- * writes them to `out` as packed x, y, z, w, 16 bytes a vertex: what draws and tests without a matrix take. With the
- * matrix they give the same bits, and need no second array. No object is used.
+ * Transforms `n_vertices` positions (x, y, z, 1) by `matrix` (16 floats, as in MOC_RenderTriangles) and writes them to
+ * `out` as packed x, y, z, w, 16 bytes per vertex: the form that draws and tests without a matrix take. Draws and
+ * tests with the matrix give the same bits without a second array. No object is needed.
  *
- * `vertices` points to the x of the first; `layout` says where the others are (null: x, y, z packed, 12
- * bytes a vertex), its last offset names z. All pointers may lie at any address.
+ * `vertices` points to the x of the first vertex; `layout` says where the other coordinates are (null: packed x, y, z,
+ * 12 bytes per vertex); its last offset is that of z. No alignment is required.
  *
- * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null when there are no vertices),
+ * Errors: MOC_STATUS_NULL_POINTER (`vertices` and `out` may be null if there are no vertices),
  * MOC_STATUS_INVALID_LAYOUT for a negative stride, MOC_STATUS_INVALID_SIZE for more vertices than memory can hold.
  *
  * Required:
@@ -1424,27 +1435,28 @@ MOC_Status MOC_TransformVertices(const float *matrix,
                                  const struct MOC_VertexLayout *layout);
 
 /**
- * Makes a pool of `threads` threads (0 to 1024) and writes it to `out` (null there on errors). Where `processors` leaves fewer
- * besides the caller's, there are fewer threads, but one at least; 0: as many processors as the system says. The threads sleep
- * until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do. The caller gives the pool back to
+ * Creates a pool of `threads` threads (0 to 1024) and writes it to `out` (null on errors). If fewer of the
+ * `processors` are left besides the caller's, fewer threads are started, but at least one; `processors` 0 means as
+ * many as the system reports. The threads sleep until MOC_ThreadpoolWakeThreads, and whenever there is nothing to do.
+ * The caller destroys the pool with MOC_ThreadpoolDestroy.
+ *
+ * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw
+ * for each mesh; MOC_ThreadpoolFlush; tests.
+ *
+ * Draw calls return at once. The threads draw into `bins_w` times `bins_h` bins of the screen (at most four per
+ * thread, none smaller than 128x64 pixels; the screen is divided into rows first), within each bin in the order of the
+ * calls, so the buffer has the same bits as if one thread drew it. While a worker thread is awake, submitted work is
+ * drawn without a further call. With none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads,
+ * MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or MOC_ThreadpoolWorkOnce.
+ *
+ * At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller helps until this
+ * is so again. A program that rotates among `max_jobs` + 1 arrays therefore needs no flush before it overwrites one.
+ *
+ * Several threads may submit and query at once, and call every other function of the pool except
  * MOC_ThreadpoolDestroy.
  *
- * Once: MOC_ThreadpoolSetBuffer, MOC_ThreadpoolWakeThreads. Each frame: MOC_ThreadpoolClearBuffer; a matrix and a draw for
- * each mesh; MOC_ThreadpoolFlush; tests.
- *
- * Draw calls return at once. The threads draw in `bins_w` times `bins_h` bins of the screen (at most four per thread, none
- * smaller than 128x64 pixels, and the screen is divided into rows first), in each bin in the order of the calls: the buffer
- * gets the same bits as from one thread. While a worker thread is awake, submitted work is drawn without a further call. With
- * none awake, or none at all, it waits for MOC_ThreadpoolWakeThreads, MOC_ThreadpoolFlush, MOC_ThreadpoolSuspendThreads or
- * MOC_ThreadpoolWorkOnce.
- *
- * At most `max_jobs` calls still read their arrays when a draw call returns; beyond that the caller does work until this holds
- * again. So a program that rotates among `max_jobs` + 1 arrays needs no flush before it overwrites one.
- *
- * Several threads may submit and query at once, and call every other function of the pool but MOC_ThreadpoolDestroy.
- *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE where `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` above 1024,
- * MOC_STATUS_OUT_OF_MEMORY where the system starts no more threads.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE if `bins_w`, `bins_h` or `max_jobs` is 0 or `threads` is
+ * above 1024, MOC_STATUS_OUT_OF_MEMORY if the system cannot start the threads.
  *
  * Required:
  * `out` is null or can be written.
@@ -1471,17 +1483,17 @@ MOC_Status MOC_ThreadpoolCreateFrom(const struct MOC_ThreadpoolSettings *setting
                                     struct MOC_Threadpool **out);
 
 /**
- * Draws what was submitted, ends the threads, and frees the pool; the object that it drew into stays. Null is
+ * Draws everything submitted, ends the threads, and frees the pool; the object that it drew into remains. Null is
  * allowed.
  *
  * Required:
- * `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. What was submitted since the
- * last MOC_ThreadpoolFlush can still be read.
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed; nobody uses it any more. The arrays of the calls
+ * submitted since the last MOC_ThreadpoolFlush can still be read.
  */
 MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
 
 /**
- * Lets the threads work. A second time changes nothing.
+ * Wakes the threads, so that they draw what is submitted. Has no effect if they are already awake.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1491,8 +1503,8 @@ MOC_Status MOC_ThreadpoolDestroy(struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
 
 /**
- * Draws what was submitted, then puts the threads to sleep. Calls are still accepted; they wait until the threads are woken,
- * or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
+ * Draws everything submitted, then puts the threads to sleep. Draw calls are still accepted; they wait until the
+ * threads are woken, or until a call flushes or does the work (MOC_ThreadpoolWorkOnce).
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1502,8 +1514,8 @@ MOC_Status MOC_ThreadpoolWakeThreads(const struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 
 /**
- * Waits until everything that was submitted before is drawn. Afterwards the arrays of those calls may be changed or freed,
- * and, as long as no thread calls the pool, the object may be drawn into directly.
+ * Waits until everything submitted before is drawn. Afterwards the arrays of those calls may be changed or freed and,
+ * as long as no thread calls the pool, the object may be drawn into directly.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1558,7 +1570,8 @@ MOC_Status MOC_ThreadpoolGetThreads(const struct MOC_Threadpool *pool, uint32_t 
 MOC_Status MOC_ThreadpoolGetBins(const struct MOC_Threadpool *pool, uint32_t *bins_w, uint32_t *bins_h);
 
 /**
- * Draws into `moc` from now on (null: into nothing), once what was submitted before is drawn. The object keeps its near plane.
+ * Makes the pool draw into `moc` from now on (null: into no object), once everything submitted before is drawn. The
+ * object keeps its near plane.
  *
  * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
  * while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
@@ -1575,9 +1588,9 @@ MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
                                    MaskedOcclusionCulling *moc);
 
 /**
- * MOC_SetResolution of the pool's object, after what was submitted is drawn.
+ * MOC_SetResolution on the pool's object, once everything submitted is drawn.
  *
- * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+ * Errors: as there, and MOC_STATUS_NO_BUFFER if the pool has no object.
  *
  * Required:
  * As MOC_ThreadpoolWakeThreads. Meanwhile no thread queries the object other than through the pool.
@@ -1587,7 +1600,7 @@ MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32
 /**
  * MOC_ThreadpoolFlush, then MOC_SetNearClipPlane on the pool's object.
  *
- * Errors: as there, and MOC_STATUS_NO_BUFFER where the pool has no object.
+ * Errors: as there, and MOC_STATUS_NO_BUFFER if the pool has no object.
  *
  * Required:
  * As MOC_ThreadpoolWakeThreads.
@@ -1595,9 +1608,10 @@ MOC_Status MOC_ThreadpoolSetResolution(const struct MOC_Threadpool *pool, uint32
 MOC_Status MOC_ThreadpoolSetNearClipPlane(const struct MOC_Threadpool *pool, float near);
 
 /**
- * Sets the matrix of the calling thread's later calls, 16 floats as in MOC_RenderTriangles, which are copied; null: none, the
- * vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those that any thread set last,
- * so one thread may set up and another draw. MOC_ThreadpoolRenderMesh takes both with the mesh.
+ * Sets the matrix of the calling thread's later calls: 16 floats as in MOC_RenderTriangles, which are copied. Null: no
+ * matrix, the vertices are in clip space. A thread that has never set a matrix or layout on this pool uses those most
+ * recently set by any thread, so one thread may set them and another draw. MOC_ThreadpoolRenderMesh takes both from
+ * the mesh.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool.
  *
@@ -1608,8 +1622,9 @@ MOC_Status MOC_ThreadpoolSetMatrix(const struct MOC_Threadpool *pool,
                                    const float *model_to_clip);
 
 /**
- * Sets the vertex layout of the calling thread's later calls; null: (16, 4, 12), packed x, y, z, w, which does not suit a
- * matrix: with one the last offset is that of z. Threads that set none are treated as in MOC_ThreadpoolSetMatrix.
+ * Sets the vertex layout of the calling thread's later calls. Null: (16, 4, 12), packed x, y, z, w, which is wrong
+ * with a matrix, because the last offset is then that of z. A thread that has never set one uses the most recent, as
+ * in MOC_ThreadpoolSetMatrix.
  *
  * Errors: MOC_STATUS_NULL_POINTER for the pool; MOC_STATUS_INVALID_LAYOUT for a negative stride.
  *
@@ -1620,8 +1635,8 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
                                          const struct MOC_VertexLayout *layout);
 
 /**
- * MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns the buffer is clear, and
- * the arrays of all earlier calls may be changed or freed.
+ * MOC_ThreadpoolFlush, then clears the object's buffer: the first call of a frame. When it returns, the buffer is
+ * clear, and the arrays of all earlier calls may be changed or freed.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER.
  *
@@ -1631,8 +1646,8 @@ MOC_Status MOC_ThreadpoolSetVertexLayout(const struct MOC_Threadpool *pool,
 MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
 
 /**
- * MOC_RenderTriangles with the matrix and the vertex layout that the calling thread has set, as MOC_ThreadpoolRenderMesh: it
- * returns at once.
+ * MOC_RenderTriangles with the calling thread's matrix and vertex layout. It returns at once, like
+ * MOC_ThreadpoolRenderMesh.
  *
  * Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
  *
@@ -1648,8 +1663,9 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          int32_t clip_planes);
 
 /**
- * Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then it works until that
- * no longer holds. The struct, its matrix and its layout are copied. The near plane is the object's.
+ * Submits occluders and returns at once, unless more than `max_jobs` calls still read their arrays: then the calling
+ * thread helps until that is no longer so. The struct, its matrix and its layout are copied. The near plane is the
+ * object's.
  *
  * Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
  *
@@ -1690,7 +1706,7 @@ MOC_Status MOC_ThreadpoolTestRect(const struct MOC_Threadpool *pool,
                                   int32_t *result);
 
 /**
- * MOC_TestTriangles with the matrix and the vertex layout that the calling thread has set, against what has been drawn so far.
+ * MOC_TestTriangles with the calling thread's matrix and vertex layout, against what has been drawn so far.
  *
  * Errors: as there.
  *
@@ -1706,7 +1722,7 @@ MOC_Status MOC_ThreadpoolTestTriangles(const struct MOC_Threadpool *pool,
                                        int32_t *result);
 
 /**
- * MOC_ComputePixelDepthBuffer of the pool's object, after everything submitted is drawn.
+ * MOC_ComputePixelDepthBuffer for the pool's object, once everything submitted is drawn.
  *
  * Errors: as there.
  *
@@ -1718,23 +1734,24 @@ MOC_Status MOC_ThreadpoolComputePixelDepthBuffer(const struct MOC_Threadpool *po
                                                  int32_t flip_y);
 
 /**
- * Folds the buffers of `count` other objects into the pool's, in order with the calls around it, with the result of
- * MOC_MergeBuffers: each thread takes pieces of the screen.
+ * Merges the buffers of `count` other objects into the pool's, in order with the calls before and after it. The result
+ * is that of MOC_MergeBuffers; each thread merges parts of the screen.
  *
- * Errors: as there; nothing is folded.
+ * Errors: as there; on an error nothing is merged.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the others
- * until a flushing call returns.
+ * As MOC_ThreadpoolWakeThreads and MOC_MergeBuffers. Nobody changes or destroys the other objects until a flushing
+ * call returns.
  */
 MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
                                       const MaskedOcclusionCulling *const *others,
                                       uint32_t count);
 
 /**
- * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md for the
- * format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged. Setting another near
- * plane or resolution ends the recording, once it holds a call; merges and lists are not recorded.
+ * Records clears, draws and queries into a file from now on, to be read by MOC_RecordingLoad; see docs/recordings.md
+ * for the format. `path` is UTF-8 on Windows, whatever the code page; on Unix its bytes are passed on unchanged.
+ * Changing the near plane or the resolution ends a recording that already contains a call. Merges and triangle lists
+ * are not recorded.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
  * file cannot be created, or on Windows if `path` is not UTF-8.
@@ -1747,9 +1764,9 @@ MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
                              const char *path);
 
 /**
- * Ends the recording. Nothing happens where there is none. An object that is destroyed ends its recording, too.
+ * Ends the recording; does nothing if there is none. Destroying an object also ends its recording.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE where something could not be written, now or before.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if anything could not be written, now or earlier.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile.
@@ -1757,13 +1774,13 @@ MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
 MOC_Status MOC_RecorderStop(const MaskedOcclusionCulling *moc);
 
 /**
- * Records a draw that MOC_RenderTriangles is not told of, such as that of a mesh that is binned. `result`: a MOC_CullingResult,
- * or MOC_RESULT_UNKNOWN. Nothing happens while nothing is recorded.
+ * Records a draw that does not go through MOC_RenderTriangles, such as that of a binned mesh. `result`: a
+ * MOC_CullingResult, or MOC_RESULT_UNKNOWN. Does nothing if the object is not recording.
  *
- * Errors: those of MOC_RenderTriangles; nothing is recorded.
+ * Errors: as MOC_RenderTriangles; on an error nothing is recorded.
  *
  * Required:
- * That of MOC_RenderTriangles; other threads may use `moc` as they may during a query.
+ * As MOC_RenderTriangles; other threads may use `moc` as they may during a query.
  */
 MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
                                      const float *vertices,
@@ -1776,18 +1793,18 @@ MOC_Status MOC_RecordRenderTriangles(const MaskedOcclusionCulling *moc,
                                      int32_t result);
 
 /**
- * MOC_RecordRenderTriangles of a mesh that a struct describes.
+ * MOC_RecordRenderTriangles for a mesh described by a struct.
  *
- * Errors: those of MOC_RenderMesh; nothing is recorded.
+ * Errors: as MOC_RenderMesh; on an error nothing is recorded.
  *
  * Required:
- * That of MOC_RenderMesh; other threads may use `moc` as they may during a query.
+ * As MOC_RenderMesh; other threads may use `moc` as they may during a query.
  */
 MOC_Status MOC_RecordMesh(const MaskedOcclusionCulling *moc, const struct MOC_Mesh *mesh, int32_t result);
 
 /**
- * Reads a recording and writes it to `out` (null there on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows.
- * The caller gives the recording back to MOC_RecordingDestroy. Several threads may read from one recording at once.
+ * Reads a recording and writes it to `out` (null on errors). `path` is as for MOC_RecorderStart: UTF-8 on Windows. The
+ * caller destroys the recording with MOC_RecordingDestroy. Several threads may read from one recording at once.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_FILE if the file cannot be read, or on Windows if `path` is not UTF-8,
  * MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_INVALID_RECORDING for one that is empty, truncated or corrupt.
@@ -1799,7 +1816,7 @@ MOC_Status MOC_RecordingLoad(const char *path,
                              struct MOC_Recording **out);
 
 /**
- * The same of a file that was read into memory, which is not needed afterwards.
+ * As MOC_RecordingLoad, for a file that is already in memory; `bytes` may be freed afterwards.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
  *
@@ -1817,7 +1834,8 @@ MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC
 MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
 
 /**
- * Writes to `out` what the recording begins with. `out->size` is sizeof(MOC_RecordingInfo), set by the caller.
+ * Writes the header of the recording to `out`. The caller sets `out->size` to sizeof(MOC_RecordingInfo) before the
+ * call.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
@@ -1828,11 +1846,12 @@ MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording,
                                 struct MOC_RecordingInfo *out);
 
 /**
- * Writes the call number `index` to `out`, counted from 0. `out->size` is sizeof(MOC_RecordedCall), set by the caller. What its
- * pointers name belongs to the recording and lives as long.
+ * Writes the recorded call number `index`, counted from 0, to `out`. The caller sets `out->size` to
+ * sizeof(MOC_RecordedCall) before the call. The memory that its pointers refer to belongs to the recording and is
+ * freed with it.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too small; nothing
- * is written.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INDEX_OUT_OF_RANGE, MOC_STATUS_INVALID_SIZE for a `size` that is too
+ * small; nothing is written.
  *
  * Required:
  * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
