@@ -35,12 +35,12 @@ use crate::statistics::Tally;
 /// Draws a mesh.
 pub(crate) fn draw(level: Level, region: Region<'_>, camera: &Camera, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
     let buffer = region.buffer();
-    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Draw::new(region) }).0
+    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Draw::<true>::new(region) })
 }
 
 /// Tests a mesh. The answer is only valid if nobody drew in the meantime.
 pub(crate) fn test(level: Level, buffer: &Buffer, camera: &Camera, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
-    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Query::new(buffer) }).0
+    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Query::new(buffer) })
 }
 
 /// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True if a list was full.
@@ -53,9 +53,10 @@ pub(crate) fn bin_to_lists(
     bin_size: (u32, u32),
     bins: (u32, u32),
 ) -> (CullingResult, Tally, bool) {
-    let sink = AppendToLists::new(lists, bin_size, bins);
-    let ((result, tally), sink) = simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink });
-    (result, tally, sink.full)
+    let mut full = false;
+    let sink = AppendToLists::new(lists, bin_size, bins, &mut full);
+    let (result, tally) = simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink });
+    (result, tally, full)
 }
 
 /// Draws a list into a region.
@@ -63,8 +64,8 @@ pub(crate) fn draw_list(level: Level, region: Region<'_>, list: &TriList<'_>) ->
     let (buffer, tiles) = (region.buffer(), region.tiles());
     // With sixteen lanes two tiles are updated at a time, one below the other, and both must be in the region.
     let whole_blocks = tiles.y0.is_multiple_of(2) && (tiles.y1.is_multiple_of(2) || tiles.y1 == buffer.all_tiles().y1);
-    let job = Drive { buffer, source: list, sink: Draw::new(region) };
-    let ((_, tally), _) = if whole_blocks { simd::run(level, job) } else { simd::run_on_eight_lanes(level, job) };
+    let job = Drive { buffer, source: list, sink: Draw::<false>::new(region) };
+    let (_, tally) = if whole_blocks { simd::run(level, job) } else { simd::run_on_eight_lanes(level, job) };
     tally
 }
 
@@ -79,8 +80,7 @@ pub(crate) fn bin(
     binned: &mut BinnedTriangles,
 ) -> Tally {
     let sink = Bin::new(binned, bounds, buffer, prefilter);
-    let ((_, tally), _) = simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink });
-    tally
+    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink }).1
 }
 
 /// Draws binned triangles, in order, into the region of a bin, which starts at a coarse cell boundary and ends at one
@@ -92,9 +92,7 @@ pub(crate) fn draw_binned<'a>(
     bin: usize,
 ) -> Tally {
     let buffer = region.buffer();
-    let ((_, tally), _) =
-        simd::run(level, Drive { buffer, source: Binned { triangles, bin }, sink: Draw::new(region) });
-    tally
+    simd::run(level, Drive { buffer, source: Binned { triangles, bin }, sink: Draw::<true>::new(region) }).1
 }
 
 /// The largest of the indices.
@@ -110,11 +108,11 @@ struct Drive<'a, Q, K> {
 }
 
 impl<Q: TriangleSource, K: TriangleSink> Job for Drive<'_, Q, K> {
-    type Output = ((CullingResult, Tally), K);
+    type Output = (CullingResult, Tally);
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Self::Output {
         let Self { buffer, source, mut sink } = self;
-        (source::drive(s, buffer, source, &mut sink), sink)
+        source::drive(s, buffer, source, &mut sink)
     }
 }

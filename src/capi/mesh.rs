@@ -57,6 +57,7 @@ pub(super) trait Describe {
     /// # Safety
     /// Each pointer is null or can be read: all of the indices, the matrix for 16 floats, and the vertices up to their
     /// stated number or, without one, from the lowest to the highest index.
+    #[inline(always)]
     unsafe fn check<'a>(&self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Refusal> {
         // SAFETY: the caller's contract.
         unsafe { self.describe()?.check(moc) }
@@ -108,6 +109,8 @@ pub(super) struct MeshArguments {
 }
 
 impl Describe for MeshArguments {
+    // Inlined: a description that goes through memory is measurable in small calls.
+    #[inline(always)]
     unsafe fn describe(&self) -> Result<Description, Refusal> {
         const COUNT: Refusal = Refusal::new(
             MOC_Status::MOC_STATUS_INVALID_SIZE,
@@ -136,6 +139,7 @@ impl Describe for MeshArguments {
 }
 
 impl Describe for *const MOC_Mesh {
+    #[inline(always)]
     unsafe fn describe(&self) -> Result<Description, Refusal> {
         const NAMES: Names = Names {
             no_triangles: "indices is null",
@@ -182,6 +186,7 @@ impl Describe for *const MOC_Mesh {
 impl Description {
     /// # Safety
     /// As [`Describe::check`].
+    #[inline(always)]
     unsafe fn check<'a>(self, moc: &MaskedOcclusionCulling) -> Result<CheckedMesh<'a>, Refusal> {
         const STRIDE: Refusal =
             Refusal::new(MOC_Status::MOC_STATUS_INVALID_LAYOUT, "the stride of the vertex layout is negative");
@@ -232,6 +237,7 @@ pub(super) struct CheckedMesh<'a> {
 }
 
 impl CheckedMesh<'_> {
+    #[inline(always)]
     pub fn mesh(&self) -> Mesh<'_> {
         let Self { vertices, triangles, matrix, options } = self;
         // SAFETY: by the contract of `Describe::check`, every vertex that an index refers to can be read.

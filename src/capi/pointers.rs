@@ -26,6 +26,7 @@ pub(super) unsafe fn object_mut<'a>(
 ///
 /// # Safety
 /// Null or from `MOC_Create` and not destroyed; nothing else uses the object meanwhile, except a pool that is drawing into it.
+#[inline]
 pub(super) unsafe fn idle_object_mut<'a>(
     moc: *mut MaskedOcclusionCulling,
 ) -> Result<&'a mut MaskedOcclusionCulling, Refusal> {
@@ -38,6 +39,7 @@ pub(super) unsafe fn idle_object_mut<'a>(
 }
 
 /// Refuses calls that would change or copy the buffer while the object's pool draws into it.
+#[inline]
 pub(super) fn check_idle(moc: &MaskedOcclusionCulling) -> Result<(), MOC_Status> {
     if moc.attachment().is_busy() { Err(MOC_Status::MOC_STATUS_BUSY) } else { Ok(()) }
 }
@@ -120,6 +122,7 @@ pub(super) fn check_length<T>(len: usize) -> Result<(), MOC_Status> {
 ///
 /// # Safety
 /// `data` is null or can be read.
+#[inline]
 pub(super) unsafe fn read<T: Copy>(data: *const T) -> Option<T> {
     // SAFETY: not null, and the caller's contract.
     if data.is_null() { None } else { Some(unsafe { data.read_unaligned() }) }
@@ -129,6 +132,7 @@ pub(super) unsafe fn read<T: Copy>(data: *const T) -> Option<T> {
 ///
 /// # Safety
 /// `data` is null or can be read for four bytes.
+#[inline]
 pub(super) unsafe fn read_size<T>(data: *const T) -> Option<usize> {
     // SAFETY: the caller's contract.
     unsafe { read(data.cast::<u32>()) }.map(|size| size as usize)

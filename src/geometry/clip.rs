@@ -156,19 +156,16 @@ fn project(camera: &Camera, [x, y, w]: [f64; 3]) -> [f32; 3] {
 }
 
 impl Polygon {
-    /// The triangles of the polygon's fan that are on the screen and may be front-facing, with their corners in
-    /// set-up's order.
-    pub fn triangles<C: Coverage>(
-        &self,
-        camera: &Camera,
-        facing: Facing,
-    ) -> impl Iterator<Item = [[f32; 3]; 3]> + use<'_, C> {
-        let camera = *camera;
-        let kept = move |&k: &usize| self.faces::<C>(facing, k) && self.on_screen(&camera, k);
-        (1..self.len - 1).filter(kept).map(move |k| {
-            let [a, b, c] = [self.corners[0], self.corners[k], self.corners[k + 1]];
-            if facing.swap { [a, c, b] } else { [a, b, c] }
-        })
+    /// Emits the triangles of the polygon's fan that are on the screen and may be front-facing, with their corners in
+    /// set-up's order. Outlined: few triangles are clipped, and the loop over the others is hot.
+    #[inline(never)]
+    pub fn emit<C: Coverage>(&self, camera: &Camera, facing: Facing, mut push: impl FnMut(&[[f32; 3]; 3])) {
+        for k in 1..self.len - 1 {
+            if self.faces::<C>(facing, k) && self.on_screen(camera, k) {
+                let [a, b, c] = [self.corners[0], self.corners[k], self.corners[k + 1]];
+                push(&if facing.swap { [a, c, b] } else { [a, b, c] });
+            }
+        }
     }
 
     /// May triangle `k` of the fan be front-facing?
@@ -178,7 +175,11 @@ impl Polygon {
         let (dx2, dy2) = (f64::from(x2) - f64::from(x0), f64::from(y2) - f64::from(y0));
         let area = dx1 * dy2 - dx2 * dy1;
         let area = if facing.swap { -area } else { area };
-        let slack = f64::from(C::CORNER_SHIFT) * (dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0);
+        let slack = if C::CORNER_SHIFT > 0.0 {
+            f64::from(C::CORNER_SHIFT) * (dx1.abs() + dy1.abs() + dx2.abs() + dy2.abs() + 8.0)
+        } else {
+            0.0
+        };
         facing.both || area > -slack
     }
 

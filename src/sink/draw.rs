@@ -13,13 +13,17 @@ use crate::simd::{Outlined, Simd};
 use crate::statistics::Tally;
 
 /// Draws into a region.
-pub(crate) struct Draw<'a> {
+///
+/// `COARSE`: the region consists of whole coarse cells. Known when compiled, so that the HiZ test of small draws has no code for
+/// the other case.
+pub(crate) struct Draw<'a, const COARSE: bool> {
     region: Region<'a>,
 }
 
-impl<'a> Draw<'a> {
+impl<'a, const COARSE: bool> Draw<'a, COARSE> {
     #[inline(always)]
     pub fn new(region: Region<'a>) -> Self {
+        debug_assert_eq!(region.has_coarse_level(), COARSE);
         Self { region }
     }
 
@@ -42,13 +46,13 @@ impl<'a> Draw<'a> {
     }
 }
 
-impl TriangleSink for Draw<'_> {
+impl<const COARSE: bool> TriangleSink for Draw<'_, COARSE> {
     type Coverage = Exact;
     type Memory = Workspace;
 
     #[inline(always)]
     fn scope(&self) -> HizScope {
-        HizScope { clip: self.region.tiles(), coarse: self.region.has_coarse_level() }
+        HizScope { clip: self.region.tiles(), coarse: COARSE }
     }
 
     #[inline(always)]
@@ -69,11 +73,8 @@ impl TriangleSink for Draw<'_> {
         if counts {
             let (batch, clip): (&Batch, _) = (&memory.batch, self.region.tiles());
             // Each bin of a screen gets the same triangles, which must count once; a list has its own.
-            tally.rasterized += if self.region.has_coarse_level() {
-                begun_in(batch, alive.rasterized, clip)
-            } else {
-                u64::from(alive.rasterized.count_ones())
-            };
+            tally.rasterized +=
+                if COARSE { begun_in(batch, alive.rasterized, clip) } else { u64::from(alive.rasterized.count_ones()) };
             tally.traversed += tiles_in(batch, alive.rasterized, clip);
             let (updated, merged) = self.update::<S, true>(setup.s, &alive, memory);
             (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);

@@ -14,15 +14,15 @@ pub(crate) struct AppendToLists<'b, 'c> {
     lists: &'b mut [TriList<'c>],
     bin_size: (u32, u32),
     bins: (u32, u32),
-    /// Some list was full.
-    pub full: bool,
+    /// Set if a list was full.
+    full: &'b mut bool,
 }
 
 impl<'b, 'c> AppendToLists<'b, 'c> {
     /// `bins.0` by `bins.1` lists, row by row, for bins of `bin_size` pixels.
-    pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32)) -> Self {
+    pub fn new(lists: &'b mut [TriList<'c>], bin_size: (u32, u32), bins: (u32, u32), full: &'b mut bool) -> Self {
         assert_eq!(lists.len() as u64, u64::from(bins.0) * u64::from(bins.1));
-        Self { lists, bin_size, bins, full: false }
+        Self { lists, bin_size, bins, full }
     }
 }
 
@@ -57,7 +57,7 @@ impl TriangleSink for AppendToLists<'_, '_> {
             let row = |tile: u32| (tile / high).min(self.bins.1 - 1);
             for y in row(y0)..=row(y1) {
                 for x in column(x0)..=column(x1) {
-                    self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
+                    *self.full |= !self.lists[(y * self.bins.0 + x) as usize].push(&triangle);
                 }
             }
         }

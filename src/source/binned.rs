@@ -1,6 +1,6 @@
 //! Feeds the triangles that the pool binned back into the stream: those that may reach a given bin.
 
-use super::{Drain, Stream, TriangleSource};
+use super::{Drain, Stopped, Stream, TriangleSource, Vector};
 use crate::raster::queue::CAPACITY;
 use crate::simd::{MAX_LANES, Simd};
 use crate::sink::{BinnedTriangles, TriangleSink};
@@ -14,11 +14,16 @@ pub(crate) struct Binned<I> {
 
 impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
     #[inline(always)]
-    fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool {
+    fn feed<S: Simd, K: TriangleSink>(
+        self,
+        s: S,
+        stream: &mut Stream<'_, S, K>,
+        _: &mut Option<Vector<S>>,
+    ) -> Result<(), Stopped> {
         for block in self.triangles.flat_map(BinnedTriangles::blocks) {
             if block.both_sides != stream.both_sides() {
                 // Sinks of binned triangles accept all of them.
-                stream.submit(Drain::Everything);
+                stream.submit(None, Drain::Everything)?;
                 stream.set_both_sides(block.both_sides);
             }
             for (k, &reach) in block.reach(self.bin).iter().enumerate() {
@@ -32,11 +37,11 @@ impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
                 // SAFETY: there is room, because the queue holds at most its capacity less a vector.
                 unsafe { stream.queue.append(s, lanes_of(s, u32::from(reach)), &corners) };
                 if stream.queue.len() > CAPACITY - MAX_LANES {
-                    stream.submit(Drain::FullVectors);
+                    stream.submit(None, Drain::FullVectors)?;
                 }
             }
         }
-        true
+        Ok(())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::{Drain, Stream, TriangleSource};
+use super::{Drain, Stopped, Stream, TriangleSource, Vector};
 use crate::bins::{FLOATS_PER_TRIANGLE, TriList};
 use crate::float_environment::round_ties_even;
 use crate::geometry::camera::{FARTHEST_W, NEAREST_W};
@@ -16,18 +16,21 @@ use crate::statistics::Tally;
 /// The triangles of a list, whose corners were put in order when it was filled.
 impl TriangleSource for &TriList<'_> {
     #[inline(always)]
-    fn feed<S: Simd, K: TriangleSink>(self, _: S, stream: &mut Stream<'_, S, K>) -> bool {
+    fn feed<S: Simd, K: TriangleSink>(
+        self,
+        _: S,
+        stream: &mut Stream<'_, S, K>,
+        _: &mut Option<Vector<S>>,
+    ) -> Result<(), Stopped> {
         stream.tally.processed = self.len() as u64;
         let mut position = 0;
         while position < self.len() {
             let end = self.len().min(position + CAPACITY);
             fetch(self, position..end, stream.queue, &mut stream.tally);
             position = end;
-            if !stream.submit(Drain::Everything) {
-                return false;
-            }
+            stream.submit(None, Drain::Everything)?;
         }
-        true
+        Ok(())
     }
 }
 

@@ -5,7 +5,7 @@ use super::chunk::{self, Chunk};
 use super::cull::Packet;
 use super::scratch::Scratch;
 use super::vertex_reader::VertexReader;
-use super::{Drain, Stream, TriangleSource};
+use super::{Drain, Stopped, Stream, TriangleSource, Vector};
 use crate::DrawOptions;
 use crate::geometry::clip::{self, Clipped};
 use crate::geometry::{Camera, Coverage, Facing, project};
@@ -78,7 +78,12 @@ impl TriangleSource for MeshTriangles<'_> {
     }
 
     #[inline(always)]
-    fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool {
+    fn feed<S: Simd, K: TriangleSink>(
+        self,
+        s: S,
+        stream: &mut Stream<'_, S, K>,
+        direct: &mut Option<Vector<S>>,
+    ) -> Result<(), Stopped> {
         let Self { mesh, camera, facing } = self;
         let camera = &camera.with_guard_band(K::Coverage::GUARD_BAND);
         let reader = VertexReader::new(s, mesh.vertices, mesh.matrix);
@@ -103,7 +108,7 @@ impl TriangleSource for MeshTriangles<'_> {
             let kept = s.mask_bits(culled.kept);
             if culled.irregular == 0 {
                 if kept != 0 && triangles <= S::LANES {
-                    stream.set_direct(packet.corners, culled.kept);
+                    *direct = Some((packet.corners, culled.kept));
                 } else if kept != 0 {
                     // SAFETY: below `FULL` there is room.
                     unsafe { stream.queue.append(s, culled.kept, &packet.corners) };
@@ -131,21 +136,20 @@ impl TriangleSource for MeshTriangles<'_> {
                                 break;
                             }
                             Clipped::Polygon(polygon) => {
-                                for triangle in polygon.triangles::<K::Coverage>(camera, facing) {
-                                    stream.in_view = true;
-                                    stream.queue.push(&triangle);
-                                }
+                                let before = stream.queue.len();
+                                polygon.emit::<K::Coverage>(camera, facing, |triangle| stream.queue.push(triangle));
+                                stream.in_view |= stream.queue.len() > before;
                             }
                         }
                     }
                 }
             }
             position += count;
-            if stream.queue.len() > FULL && !stream.submit(Drain::FullVectors) {
-                return false;
+            if stream.queue.len() > FULL {
+                stream.submit(None, Drain::FullVectors)?;
             }
         }
-        true
+        Ok(())
     }
 }
 

@@ -30,10 +30,21 @@ pub(crate) trait TriangleSource: Sized {
         false
     }
 
-    /// Queues all triangles, in order, and submits them when the queue is full. Returns false if the sink needs no
-    /// more.
-    fn feed<S: Simd, K: TriangleSink>(self, s: S, stream: &mut Stream<'_, S, K>) -> bool;
+    /// Queues all triangles, in order, and submits them when the queue is full. The only vector of a small call goes to
+    /// `direct` instead, which saves a round trip through memory.
+    fn feed<S: Simd, K: TriangleSink>(
+        self,
+        s: S,
+        stream: &mut Stream<'_, S, K>,
+        direct: &mut Option<Vector<S>>,
+    ) -> Result<(), Stopped>;
 }
+
+/// The corners of a vector of triangles, and which lanes hold one.
+pub(crate) type Vector<S> = ([Corner<S>; 3], <S as Simd>::M);
+
+/// The sink needs no more triangles.
+pub(crate) struct Stopped;
 
 /// Whether triangles that do not fill a vector are submitted too, or wait for more.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,8 +57,6 @@ pub(crate) enum Drain {
 pub(crate) struct Stream<'a, S: Simd, K: TriangleSink> {
     setup: Setup<'a, S>,
     pub queue: &'a mut TriangleQueue,
-    /// The only triangles of a small call, submitted before those of the queue; this saves a round trip through memory.
-    direct: Option<([Corner<S>; 3], S::M)>,
     memory: &'a mut Memory<K::Memory>,
     sink: &'a mut K,
     pub tally: Tally,
@@ -69,21 +78,15 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
         self.setup.both_sides = both_sides;
     }
 
-    /// Sets the only triangles of a call.
+    /// Submits a vector, if there is one, and queued triangles to the sink.
     #[inline(always)]
-    pub fn set_direct(&mut self, corners: [Corner<S>; 3], active: S::M) {
-        self.direct = Some((corners, active));
-    }
-
-    /// Submits queued triangles to the sink. Returns false if it needs no more.
-    #[inline(always)]
-    pub fn submit(&mut self, drain: Drain) -> bool {
+    pub fn submit(&mut self, mut direct: Option<Vector<S>>, drain: Drain) -> Result<(), Stopped> {
         let s = self.setup.s;
         let len = self.queue.len();
         let end = if drain == Drain::Everything { len } else { len / S::LANES * S::LANES };
         let mut done = 0;
         loop {
-            let (corners, active) = match self.direct.take() {
+            let (corners, active) = match direct.take() {
                 Some(vector) => vector,
                 None if done < end => {
                     let vector = (self.queue.vector(s, done), s.first(end - done));
@@ -93,11 +96,11 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
                 None => break,
             };
             if !self.sink.submit(self.setup, corners, active, self.memory, &mut self.tally) {
-                return false;
+                return Err(Stopped);
             }
         }
         self.queue.remove(s, end);
-        true
+        Ok(())
     }
 }
 
@@ -114,14 +117,15 @@ pub(crate) fn drive<S: Simd, Q: TriangleSource, K: TriangleSink>(
     let mut stream = Stream {
         setup: Setup { s, buffer, both_sides: source.both_sides(), scope: sink.scope() },
         queue: TriangleQueue::of(&mut queue),
-        direct: None,
         memory: &mut memory,
         sink,
         tally: Tally::default(),
         in_view: false,
         unprojectable: false,
     };
-    let finished = source.feed(s, &mut stream) && stream.submit(Drain::Everything);
-    let stopped = !finished || stream.unprojectable;
+    let mut direct = None;
+    let stopped = source.feed(s, &mut stream, &mut direct).is_err()
+        || stream.submit(direct, Drain::Everything).is_err()
+        || stream.unprojectable;
     (stream.sink.result(stream.in_view, stopped), stream.tally)
 }
