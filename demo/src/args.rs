@@ -185,7 +185,7 @@ mod tests {
         assert!(record("a.obj", Path::new("frame.mocrec")).is_ok());
         let absent = folder.path().join("absent");
         let error = record("a.obj", &absent.join("frame.mocrec")).unwrap_err().to_string();
-        assert!(error.ends_with(&absent.display().to_string()), "{error}");
+        assert!(error.contains(&format!("{} does not exist", absent.display())), "{error}");
         assert!(record("a.mocrec", Path::new("frame.mocrec")).is_err());
     }
 

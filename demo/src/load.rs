@@ -353,7 +353,7 @@ mod tests {
             ("short.gltf", "3 of 44 bytes"),
             ("remote.gltf", "https"),
             ("bare.gltf", "bare.gltf"),
-            ("mesh.fbx", "none of"),
+            ("mesh.fbx", "not a .obj"),
             ("absent.obj", "cannot open"),
             ("number.obj", "line 2: position"),
             ("last.obj", "line 3: face"),
