@@ -4,7 +4,10 @@
  * Header-only over the C functions of masked_occlusion_culling.h. C++11; nothing here throws.
  *
  *     CullingThreadpool pool(threads, 4, 4);
+ *     moc->SetResolution(640, 360);
  *     pool.SetBuffer(moc);
+ *     pool.SetNearClipPlane(0.1f);
+ *     pool.SetVertexLayout(MaskedOcclusionCulling::VertexLayout(12, 4, 8));  // x, y, z: the default is for clip space
  *     pool.WakeThreads();
  *     each frame:
  *         pool.ClearBuffer();
@@ -28,7 +31,8 @@
  *
  * Several threads may call everything but the destructor concurrently. SetMatrix and SetVertexLayout apply to later calls on
  * the same thread; a thread that has never called either uses what any thread set last. The overloads with a matrix need
- * neither. TestRect and TestTriangles answer from what has been drawn so far: work that is submitted but not yet drawn hides
+ * neither. A matrix with the default layout (16, 4, 12) reads the fourth float of each vertex as z, which draws nothing
+ * useful: set both. TestRect and TestTriangles answer from what has been drawn so far: work that is submitted but not yet drawn hides
  * nothing.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT

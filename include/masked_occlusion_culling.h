@@ -624,8 +624,8 @@ typedef struct MOC_Mesh {
      */
     const float *model_to_clip;
     /**
-     * Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. The last offset is
-     * that of z with a matrix, of w without one. Offsets may be negative.
+     * Where the coordinates are. Null: packed x, y, z with a matrix (unlike in MOC_RenderTriangles), packed x, y, z, w
+     * without one. The last offset is that of z with a matrix, of w without one. Offsets may be negative.
      */
     const struct MOC_VertexLayout *layout;
     /**

@@ -37,8 +37,8 @@ pub struct MOC_Mesh {
     pub triangle_count: u32,
     /// 16 floats, as in MOC_RenderTriangles. Null: the vertices are in clip space.
     pub model_to_clip: *const f32,
-    /// Where the coordinates are. Null: packed x, y, z with a matrix, packed x, y, z, w without one. The last offset is
-    /// that of z with a matrix, of w without one. Offsets may be negative.
+    /// Where the coordinates are. Null: packed x, y, z with a matrix (unlike in MOC_RenderTriangles), packed x, y, z, w
+    /// without one. The last offset is that of z with a matrix, of w without one. Offsets may be negative.
     pub layout: *const MOC_VertexLayout,
     /// A MOC_BackfaceWinding, of the triangle as seen on the screen. Zero is MOC_BACKFACE_NONE: both sides are drawn.
     pub winding: i32,
