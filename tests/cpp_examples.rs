@@ -178,3 +178,21 @@ fn demo_culls_what_is_behind() {
         native::run(native::target().command(program).arg(&scene).arg(&result)).expect_err("a cut scene is accepted");
     assert!(error.contains("cut short"), "{error}");
 }
+
+/// README.md's frames in C++ and C compile without a warning, run, and give the right result.
+#[test]
+fn the_frames_in_the_readme() {
+    let readme = std::fs::read_to_string(native::root().join("README.md")).expect("README.md").replace("\r\n", "\n");
+    for (language, file) in [("cpp", "frame.cpp"), ("c", "frame.c")] {
+        let code = readme.split(&format!("```{language}\n")).nth(1).and_then(|rest| rest.split("```").next());
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let source = folder.path().join(file);
+        std::fs::write(&source, code.expect("a program")).expect("the program is written");
+        for link in [Link::Static, Link::Shared] {
+            let program = compile(&source.display().to_string(), link, &[], folder.path());
+            let output =
+                native::run(&mut native::target().command(program)).unwrap_or_else(|e| panic!("{link:?}: {e}"));
+            assert_eq!(output.trim(), "hidden", "{file}, {link:?}: {output}");
+        }
+    }
+}
