@@ -155,7 +155,7 @@ fn the_header_says_the_same() {
     source.push_str("};\n\n");
     for (k, (name, number)) in listed.iter().enumerate() {
         if let Some(number) = number {
-            writeln!(source, "typedef char check_{k}[(long)({name}) == {number} ? 1 : -1]; /* {name} */")
+            writeln!(source, "typedef char check_{k}[(long long)({name}) == {number} ? 1 : -1]; /* {name} */")
                 .expect("a string");
         }
     }
