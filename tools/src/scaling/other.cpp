@@ -2,6 +2,8 @@
 // compile this with that library's header and link it into a shared object. C++11. docs/benchmarking.md has the
 // commands.
 
+// z lies where w does without a matrix, see below.
+#define MOC_CHECK_LAYOUT 0
 #include "MaskedOcclusionCulling.h"
 
 #if defined(_WIN32)
