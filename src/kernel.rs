@@ -79,7 +79,7 @@ pub(crate) fn bin(
     (bounds, prefilter): (&BinBounds, bool),
     binned: &mut BinnedTriangles,
 ) -> Tally {
-    let sink = Bin::new(binned, bounds, buffer, prefilter);
+    let sink = Bin::new(binned, bounds, prefilter);
     simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink }).1
 }
 

@@ -14,10 +14,6 @@ pub(crate) struct TileRect {
     pub y1: u32,
 }
 
-impl TileRect {
-    pub const NONE: Self = Self { x0: 0, y0: 0, x1: 0, y1: 0 };
-}
-
 /// The contents of cleared tiles, with the given pixels outside the screen.
 ///
 /// # Safety

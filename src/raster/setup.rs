@@ -43,6 +43,7 @@ const INEXACT: f32 = (1 << 25) as f32;
 const MARGIN: f32 = 16.0 / (1 << 24) as f32;
 /// Error of the f64 computation, see above.
 const FINE_MARGIN: f32 = 1.0 / (1_u64 << 40) as f32;
+
 /// The result of set-up, a bit per lane.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Alive {
@@ -59,7 +60,6 @@ pub(crate) struct Setup<'a, S> {
     pub buffer: &'a Buffer,
     /// Corners may be in either order.
     pub both_sides: bool,
-    pub scope: HizScope,
 }
 
 /// A vector of triangles with the topmost corner first and the corners clockwise with y down.
@@ -123,30 +123,30 @@ impl<S: Simd> Oriented<S> {
 }
 
 /// Orients the triangles in `active` and stores their corners and the tiles of their bounds, but no edges: for lists.
-/// The other lanes may hold anything.
+/// The other lanes may hold anything. Returns the lanes that count.
 #[inline(always)]
 pub(crate) fn orient<S: Simd, C: Coverage>(
     setup: Setup<'_, S>,
     corners: [Corner<S>; 3],
     active: S::M,
     batch: &mut Batch,
-) -> Alive {
-    let Setup { s, buffer, both_sides, .. } = setup;
+) -> u32 {
+    let Setup { s, buffer, both_sides } = setup;
     let bounds = ScreenBounds::new::<C>(s, buffer.size(), &corners);
-    let (lanes, _) = Oriented::new(s, both_sides, corners).facing::<C, true>(s, &bounds, active, batch);
-    Alive { rasterized: lanes, lanes }
+    Oriented::new(s, both_sides, corners).facing::<C, true>(s, &bounds, active, batch).0
 }
 
 /// Sets up the triangles in `active`; the other lanes may hold anything. `skip_hidden`: hidden triangles need no edges.
 #[inline(always)]
 pub(crate) fn set_up<S: Simd, C: Coverage>(
     setup: Setup<'_, S>,
+    scope: HizScope,
     corners: [Corner<S>; 3],
     active: S::M,
     skip_hidden: bool,
     batch: &mut Batch,
 ) -> Alive {
-    let Setup { s, buffer, both_sides, scope } = setup;
+    let Setup { s, buffer, both_sides } = setup;
     let bounds = ScreenBounds::new::<C>(s, buffer.size(), &corners);
     // SAFETY: a draw has exclusive access to the scope's tiles; for a query, see `kernel::test`.
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
@@ -324,9 +324,9 @@ mod tests {
                 // SAFETY: sixteen floats hold a vector.
                 let corner = |k: usize| [0, 1, 2].map(|j| unsafe { s.load_f(lanes[3 * k + j].as_ptr()) });
                 let mut batch = Batch::uninit();
-                let setup = Setup { s, buffer, both_sides: false, scope };
+                let setup = Setup { s, buffer, both_sides: false };
                 let corners = [corner(0), corner(1), corner(2)];
-                let alive = set_up::<S, C>(setup, corners, s.first(S::LANES), false, &mut batch);
+                let alive = set_up::<S, C>(setup, scope, corners, s.first(S::LANES), false, &mut batch);
                 for lane in bits(alive.lanes) {
                     check(&triangles[first + lane], &batch, lane);
                 }

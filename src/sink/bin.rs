@@ -5,8 +5,7 @@
 //! would not fill.
 
 use super::{Memory, TriangleSink};
-use crate::CullingResult;
-use crate::buffer::{Buffer, TILE_HEIGHT, TILE_WIDTH};
+use crate::buffer::{TILE_HEIGHT, TILE_WIDTH};
 use crate::geometry::{Corner, Exact, ScreenBounds};
 use crate::raster::queue::CAPACITY;
 use crate::raster::{HizScope, Setup, hiz_test};
@@ -117,26 +116,20 @@ impl BinnedTriangles {
 pub(crate) struct Bin<'a> {
     binned: &'a mut BinnedTriangles,
     bounds: &'a BinBounds,
-    buffer: &'a Buffer,
     /// Leave out triangles that the buffer already hides, while other threads may be drawing into it.
     prefilter: bool,
 }
 
 impl<'a> Bin<'a> {
     #[inline(always)]
-    pub fn new(binned: &'a mut BinnedTriangles, bounds: &'a BinBounds, buffer: &'a Buffer, prefilter: bool) -> Self {
-        Self { binned, bounds, buffer, prefilter }
+    pub fn new(binned: &'a mut BinnedTriangles, bounds: &'a BinBounds, prefilter: bool) -> Self {
+        Self { binned, bounds, prefilter }
     }
 }
 
 impl TriangleSink for Bin<'_> {
     type Coverage = Exact;
     type Memory = ();
-
-    #[inline(always)]
-    fn scope(&self) -> HizScope {
-        HizScope { clip: self.buffer.all_tiles(), coarse: true }
-    }
 
     #[inline(always)]
     fn submit<S: Simd>(
@@ -153,8 +146,9 @@ impl TriangleSink for Bin<'_> {
         let mut open = active;
         if self.prefilter {
             let bounds = ScreenBounds::new::<Exact>(s, buffer.size(), &corners);
+            let scope = HizScope { clip: buffer.all_tiles(), coarse: true };
             // SAFETY: threads that are drawing meanwhile store `z_min` word by word.
-            let hidden = unsafe { hiz_test::hidden::<S, Exact, true>(s, buffer, setup.scope, &bounds) };
+            let hidden = unsafe { hiz_test::hidden::<S, Exact, true>(s, buffer, scope, &bounds) };
             open = s.and_not_m(hidden, s.and_m(active, bounds.inside));
         }
         let bits = s.mask_bits(open);
@@ -188,10 +182,5 @@ impl TriangleSink for Bin<'_> {
             unsafe { s.store_f(to.add(n * S::LANES), x) };
         }
         true
-    }
-
-    #[inline(always)]
-    fn result(&self, in_view: bool, _: bool) -> CullingResult {
-        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
     }
 }

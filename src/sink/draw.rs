@@ -3,7 +3,6 @@
 use core::marker::PhantomData;
 
 use super::{Memory, TriangleSink, begun_in, tiles_in};
-use crate::CullingResult;
 use crate::buffer::rules::{Rule, with_rule};
 use crate::buffer::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
 use crate::geometry::{Corner, Exact};
@@ -51,11 +50,6 @@ impl<const COARSE: bool> TriangleSink for Draw<'_, COARSE> {
     type Memory = Workspace;
 
     #[inline(always)]
-    fn scope(&self) -> HizScope {
-        HizScope { clip: self.region.tiles(), coarse: COARSE }
-    }
-
-    #[inline(always)]
     fn submit<S: Simd>(
         &mut self,
         setup: Setup<'_, S>,
@@ -66,7 +60,8 @@ impl<const COARSE: bool> TriangleSink for Draw<'_, COARSE> {
     ) -> bool {
         const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
         let counts = self.region.buffer().statistics();
-        let alive = setup::set_up::<S, Exact>(setup, corners, active, !counts, &mut memory.batch);
+        let scope = HizScope { clip: self.region.tiles(), coarse: COARSE };
+        let alive = setup::set_up::<S, Exact>(setup, scope, corners, active, !counts, &mut memory.batch);
         if alive.rasterized == 0 {
             return true;
         }
@@ -82,11 +77,6 @@ impl<const COARSE: bool> TriangleSink for Draw<'_, COARSE> {
             self.update::<S, false>(setup.s, &alive, memory);
         }
         true
-    }
-
-    #[inline(always)]
-    fn result(&self, in_view: bool, _: bool) -> CullingResult {
-        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
     }
 }
 

@@ -1,11 +1,10 @@
 //! Appends triangles to lists, one per bin of the screen.
 
 use super::{Memory, TriangleSink};
-use crate::CullingResult;
 use crate::bins::TriList;
-use crate::buffer::{TILE_HEIGHT, TILE_WIDTH, TileRect};
+use crate::buffer::{TILE_HEIGHT, TILE_WIDTH};
 use crate::geometry::{Corner, Exact};
-use crate::raster::{HizScope, Setup, bits, setup};
+use crate::raster::{Setup, bits, setup};
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
@@ -31,11 +30,6 @@ impl TriangleSink for AppendToLists<'_, '_> {
     type Memory = ();
 
     #[inline(always)]
-    fn scope(&self) -> HizScope {
-        HizScope { clip: TileRect::NONE, coarse: false }
-    }
-
-    #[inline(always)]
     fn submit<S: Simd>(
         &mut self,
         setup: Setup<'_, S>,
@@ -45,10 +39,10 @@ impl TriangleSink for AppendToLists<'_, '_> {
         tally: &mut Tally,
     ) -> bool {
         let batch = &mut memory.batch;
-        let alive = setup::orient::<S, Exact>(setup, corners, active, batch);
-        tally.rasterized += u64::from(alive.rasterized.count_ones());
+        let rasterized = setup::orient::<S, Exact>(setup, corners, active, batch);
+        tally.rasterized += u64::from(rasterized.count_ones());
         let (wide, high) = (self.bin_size.0 / TILE_WIDTH, self.bin_size.1 / TILE_HEIGHT);
-        for lane in bits(alive.lanes) {
+        for lane in bits(rasterized) {
             // SAFETY: `orient` stores the corners.
             let triangle = batch.corners.each_ref().map(|x| unsafe { x.get(lane) });
             let [x0, x1, y0, y1] = batch.tiles(lane);
@@ -62,10 +56,5 @@ impl TriangleSink for AppendToLists<'_, '_> {
             }
         }
         true
-    }
-
-    #[inline(always)]
-    fn result(&self, in_view: bool, _: bool) -> CullingResult {
-        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
     }
 }

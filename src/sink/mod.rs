@@ -15,7 +15,7 @@ use core::mem::MaybeUninit;
 use crate::CullingResult;
 use crate::buffer::TileRect;
 use crate::geometry::{Corner, Coverage};
-use crate::raster::{Batch, HizScope, Setup, bits};
+use crate::raster::{Batch, Setup, bits};
 use crate::simd::Simd;
 use crate::statistics::Tally;
 
@@ -24,9 +24,6 @@ pub(crate) trait TriangleSink {
     type Coverage: Coverage;
     /// Scratch memory on the stack of a call, uninitialised.
     type Memory;
-
-    /// The part of the HiZ that may be read before triangles are submitted.
-    fn scope(&self) -> HizScope;
 
     /// Processes the triangles in `active`. Returns false if no more are needed.
     fn submit<S: Simd>(
@@ -40,7 +37,10 @@ pub(crate) trait TriangleSink {
 
     /// The answer of the call. `in_view`: some triangle is front-facing and overlaps the screen; `stopped`: not all
     /// triangles were submitted, because the sink needed no more or because one cannot be projected.
-    fn result(&self, in_view: bool, stopped: bool) -> CullingResult;
+    #[inline(always)]
+    fn result(&self, in_view: bool, _stopped: bool) -> CullingResult {
+        if in_view { CullingResult::Visible } else { CullingResult::ViewCulled }
+    }
 }
 
 /// Scratch memory of a call, uninitialised.

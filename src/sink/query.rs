@@ -32,11 +32,6 @@ impl TriangleSink for Query<'_> {
     type Memory = Workspace;
 
     #[inline(always)]
-    fn scope(&self) -> HizScope {
-        HizScope { clip: self.buffer.all_tiles(), coarse: false }
-    }
-
-    #[inline(always)]
     fn submit<S: Simd>(
         &mut self,
         setup: Setup<'_, S>,
@@ -46,12 +41,13 @@ impl TriangleSink for Query<'_> {
         tally: &mut Tally,
     ) -> bool {
         const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
-        let alive = &setup::set_up::<S, Conservative>(setup, corners, active, false, &mut memory.batch);
+        let scope = HizScope { clip: self.buffer.all_tiles(), coarse: false };
+        let alive = &setup::set_up::<S, Conservative>(setup, scope, corners, active, false, &mut memory.batch);
         if alive.rasterized == 0 {
             return true;
         }
         let (t, buffer, batch, lists) = (setup.s, self.buffer, &memory.batch, &mut memory.own);
-        let clip = buffer.all_tiles();
+        let clip = scope.clip;
         let input = Input { buffer, clip, batch, alive, lists };
         let (stopped, touches) = with_rule!(buffer.rule(), R => {
             t.outlined(CompareTiles { input, op: Compare::<R>::new(buffer) })

@@ -115,7 +115,7 @@ pub(crate) fn drive<S: Simd, Q: TriangleSource, K: TriangleSink>(
     let mut queue = TriangleQueue::uninit();
     let mut memory = Memory::uninit();
     let mut stream = Stream {
-        setup: Setup { s, buffer, both_sides: source.both_sides(), scope: sink.scope() },
+        setup: Setup { s, buffer, both_sides: source.both_sides() },
         queue: TriangleQueue::of(&mut queue),
         memory: &mut memory,
         sink,

@@ -18,13 +18,9 @@ use crate::simd::Simd;
 /// Evaluates an expression with `$R` as the type of an update rule: the only place that distinguishes the rules.
 macro_rules! with_rule {
     ($rule:expr, $R:ident => $body:expr) => {
-        $crate::buffer::rules::with_rule!(@ $rule, $R => $body;
-            ThreeLayer Quick Accurate FourLayer)
+        $crate::buffer::rules::with_rule!(@each $rule, $R => $body; ThreeLayer Quick Accurate FourLayer)
     };
-    (@ $rule:expr, $R:ident => $body:expr; $first:ident $($other:ident)*) => {
-        $crate::buffer::rules::with_rule!(@@ $rule, $R => $body; $first $($other)*)
-    };
-    (@@ $rule:expr, $R:ident => $body:expr; $($name:ident)*) => {
+    (@each $rule:expr, $R:ident => $body:expr; $($name:ident)*) => {
         match $rule {
             $($crate::UpdateRule::$name => {
                 type $R = $crate::buffer::rules::$name;
