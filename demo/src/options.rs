@@ -1,7 +1,7 @@
 //! Command-line options shared by several programs.
 
 use clap::ValueEnum;
-use masked_occlusion_culling::{Implementation, UpdateRule};
+use masked_occlusion_culling::{Implementation, Settings, UpdateRule};
 
 /// An update rule, with the values of the C interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
@@ -59,6 +59,12 @@ pub fn isa(text: &str) -> Result<Isa, String> {
         let names: Vec<String> = available.iter().map(|isa| isa.name()).collect();
         format!("{what}; it has {}", names.join(", "))
     })
+}
+
+/// The settings for these options; without an instruction set, the best that the processor has.
+pub fn settings(isa: Option<Isa>, rule: Rule) -> Settings {
+    let best = Settings::default();
+    isa.map_or(best, |isa| best.with_implementation(isa.into())).with_update_rule(rule.into())
 }
 
 impl From<Rule> for UpdateRule {

@@ -5,12 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use masked_occlusion_culling::{
-    CullingResult, Implementation, MaskedOcclusionCulling, RecordedCall, Recording, Settings,
-};
+use masked_occlusion_culling::{CullingResult, MaskedOcclusionCulling, RecordedCall, Recording};
 
 use crate::depth_picture::{depth_picture, reduced};
-use crate::options::{Isa, Rule};
+use crate::options::{Isa, Rule, settings};
 
 /// Number of differing results that are listed.
 const LISTED: usize = 10;
@@ -28,9 +26,7 @@ pub struct Options<'a> {
 /// Plays the recording and prints the results. Fails if a result differs from the recorded one.
 pub fn run(options: &Options<'_>) -> crate::Result<()> {
     let recording = Recording::load(options.file).map_err(|error| format!("{}: {error}", options.file.display()))?;
-    let settings = Settings::default()
-        .with_implementation(options.isa.map_or(Implementation::Avx512, Implementation::from))
-        .with_update_rule(options.rule.into());
+    let settings = settings(options.isa, options.rule);
     let mut moc = MaskedOcclusionCulling::new(recording.resolution.0, recording.resolution.1, settings)?;
     say(&format!("{}: {}", options.file.display(), Content::of(&recording)));
 

@@ -3,8 +3,8 @@
 
 use benches::{HEIGHT, ORDERS, WIDTH, views};
 use clap::Parser;
-use demo::options::{Isa, Rule, isa};
-use masked_occlusion_culling::{Implementation, MaskedOcclusionCulling, Settings};
+use demo::options::{Isa, Rule, isa, settings};
+use masked_occlusion_culling::MaskedOcclusionCulling;
 
 #[derive(Parser)]
 struct Args {
@@ -28,10 +28,8 @@ fn main() -> Result<(), String> {
     let args = Args::parse();
     let (_, order) = ORDERS.into_iter().find(|o| o.0 == args.order).ok_or("no such order")?;
     let view = views(order).into_iter().find(|v| v.name == args.scene).ok_or("no such scene")?;
-    let (implementation, update_rule) =
-        (args.isa.map_or(Implementation::Avx512, Implementation::from), args.rule.into());
-    let settings = Settings::default().with_implementation(implementation).with_update_rule(update_rule);
-    let mut moc = MaskedOcclusionCulling::new(WIDTH, HEIGHT, settings).map_err(|e| e.to_string())?;
+    let mut moc =
+        MaskedOcclusionCulling::new(WIDTH, HEIGHT, settings(args.isa, args.rule)).map_err(|e| e.to_string())?;
     for _ in 0..args.frames {
         moc.clear_buffer();
         view.draw(&mut moc);

@@ -11,10 +11,8 @@ use std::time::{Duration, Instant};
 
 use benches::{HEIGHT, Order, View, WIDTH, views};
 use clap::Parser;
-use demo::options::{Isa, Rule, isa};
-use masked_occlusion_culling::{
-    CullingThreadpool, Implementation, MaskedOcclusionCulling, Settings, ThreadpoolSettings,
-};
+use demo::options::{Isa, Rule, isa, settings};
+use masked_occlusion_culling::{CullingThreadpool, MaskedOcclusionCulling, ThreadpoolSettings};
 
 /// Compares the thread pool with one thread, and with independent threads.
 #[derive(Parser)]
@@ -123,9 +121,7 @@ fn measure(
 
 fn main() -> Result<(), String> {
     let args = Args::parse();
-    let settings = Settings::default()
-        .with_implementation(args.isa.map_or(Implementation::Avx512, Implementation::from))
-        .with_update_rule(args.rule.into());
+    let settings = settings(args.isa, args.rule);
     let object = || MaskedOcclusionCulling::new(WIDTH, HEIGHT, settings).expect("the size is accepted");
     let processors = thread::available_parallelism().map_or(1, |n| n.get() as u32);
     let counts = match args.threads.is_empty() {
