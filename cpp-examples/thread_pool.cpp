@@ -25,7 +25,7 @@ struct Box {
     Position centre, half;
 };
 
-// The model-to-clip matrix of a box, for a camera at the origin that looks along -z. Column-major for column vectors
+// The model-to-clip matrix of a box, for a camera at the origin looking along -z. Column-major for column vectors
 // (OpenGL), which has the same memory layout as row-major for row vectors (Direct3D). The third row is not used.
 static std::vector<float> ModelToClip(const Box &box) {
     const float focal = 1.5f, aspect = 16.0f / 9.0f;

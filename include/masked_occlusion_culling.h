@@ -1163,13 +1163,12 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
 /**
  * MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
  *
- * Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small
- * or a
- * `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+ * Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or
+ * a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for the
- * number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+ * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for
+ * the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
  */
 MOC_Status MOC_RenderMesh(MaskedOcclusionCulling *moc,
                           const struct MOC_Mesh *mesh,
@@ -1816,7 +1815,7 @@ MOC_Status MOC_RecordingLoad(const char *path,
                              struct MOC_Recording **out);
 
 /**
- * As MOC_RecordingLoad, for a file that is already in memory; `bytes` may be freed afterwards.
+ * Like MOC_RecordingLoad, for a file already in memory. `bytes` may be freed once the call returns.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
  *

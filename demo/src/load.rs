@@ -94,7 +94,7 @@ fn obj(reader: impl BufRead, folder: &Path) -> Result<Scene> {
         };
         format!("{place} {}: {error}", reader.number())
     })?;
-    // Without its material file a mesh only loses its colours.
+    // A missing material file only costs the mesh its colours.
     let materials = materials.unwrap_or_default();
     let mut scene = Scene::default();
     for model in models {

@@ -1,4 +1,4 @@
-//! A plain z-buffer, for the pictures and to check the results. It shares no code with the library.
+//! A plain z-buffer for drawing the pictures and checking the results. It shares no code with the library.
 
 use glam::camera::rh::view::look_to_mat4;
 use glam::{DVec4, Mat4, Vec3};
@@ -15,7 +15,7 @@ pub struct ZBuffer {
     pub depth: Vec<f32>,
     /// Object and triangle.
     pub owner: Vec<(u32, u32)>,
-    /// How much nearer than the stored depth a triangle must be, as a factor.
+    /// The factor by which a triangle must be nearer than the stored depth.
     pub margin: f32,
     /// Number of pixels by which triangles are grown.
     pub grow: f64,

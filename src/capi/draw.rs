@@ -186,13 +186,12 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
 
 /// MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
 ///
-/// Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small
-/// or a
-/// `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+/// Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or
+/// a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for the
-/// number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for
+/// the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
 #[unsafe(export_name = symbol!(MOC_RenderMesh))]
 pub unsafe extern "C" fn MOC_RenderMesh(
     moc: *mut MaskedOcclusionCulling,

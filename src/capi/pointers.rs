@@ -44,7 +44,7 @@ pub(super) fn check_idle(moc: &MaskedOcclusionCulling) -> Result<(), MOC_Status>
     if moc.attachment().is_busy() { Err(MOC_Status::MOC_STATUS_BUSY) } else { Ok(()) }
 }
 
-/// The object, for a call that needs it to have a buffer.
+/// Refuses an object without a buffer.
 #[inline]
 pub(super) fn with_buffer(moc: &MaskedOcclusionCulling) -> Result<&MaskedOcclusionCulling, MOC_Status> {
     if moc.has_buffer() { Ok(moc) } else { Err(MOC_Status::MOC_STATUS_NO_BUFFER) }

@@ -185,7 +185,7 @@ pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut M
     guard(|| unsafe { load(out, || Recording::load(self::path(path)?).map_err(Refusal::from)) })
 }
 
-/// As MOC_RecordingLoad, for a file that is already in memory; `bytes` may be freed afterwards.
+/// Like MOC_RecordingLoad, for a file already in memory. `bytes` may be freed once the call returns.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
 ///

@@ -46,7 +46,7 @@ pub(crate) struct Batch {
     pub middle_left: Lanes<f64>,
     pub middle_right: Lanes<f64>,
     pub middle_slope: Lanes<f64>,
-    /// The edges again, rounded to f32, to bound which tiles a tile row reaches.
+    /// The edges rounded to f32, which bound the tiles that a tile row reaches.
     pub rounded: Rounded,
     /// Depth bound of the first sub-tile of the first tile, and its change per sub-tile.
     pub z: Lanes<f32>,

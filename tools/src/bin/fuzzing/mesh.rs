@@ -25,7 +25,7 @@ pub struct Mesh {
     pub whole: bool,
     /// Whether it must be refused, if that is known.
     pub refused: Option<bool>,
-    /// The corners as generated, if known, for the report of a failure.
+    /// The generated corners, if known; printed when a check fails.
     pub corners: Vec<[[f32; 3]; 3]>,
 }
 

@@ -1,4 +1,4 @@
-//! The cost of a merge relative to drawing: table 1 of the article of 2018, for the generated landscape.
+//! The cost of merging relative to drawing, as in table 1 of the 2018 article on merging, for the generated landscape.
 
 use crate::setting::RULES;
 use demo::options::Rule;

@@ -18,7 +18,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// The finest grid, up to 1/256 pixel, on which edge functions at pixels fit in 32 bits, for a guard band of at
+    /// Picks the finest grid, at most 1/256 pixel, on which edge functions at pixels fit in 32 bits with a guard band of at
     /// least 256 pixels.
     pub fn new(width: u32, height: u32) -> Self {
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "{width}x{height} pixels");
