@@ -2,7 +2,9 @@
 //! the kernel.
 
 mod query;
+#[cfg(feature = "recorder")]
 mod recording;
+#[cfg(feature = "recorder")]
 mod replay;
 
 use core::fmt;
@@ -72,17 +74,20 @@ impl MaskedOcclusionCulling {
     /// instruction set that the processor has and `settings` allow.
     ///
     /// # Errors
-    /// [`Error::InvalidSize`], [`Error::OutOfMemory`].
+    /// [`Error::InvalidSize`], [`Error::OutOfMemory`], [`Error::UnavailableRule`].
     pub fn new(width: u32, height: u32, settings: Settings) -> Result<Self, Error> {
-        let mut moc = Self::without_buffer(settings);
+        let mut moc = Self::without_buffer(settings)?;
         moc.set_resolution(width, height)?;
         Ok(moc)
     }
 
     /// An object of the C interface, which gets its buffer later. Until then only calls that need no buffer may be
     /// made: `capi` checks [`Self::has_buffer`] before all others.
-    pub(crate) fn without_buffer(settings: Settings) -> Self {
-        Self {
+    pub(crate) fn without_buffer(settings: Settings) -> Result<Self, Error> {
+        if !UpdateRule::available().contains(&settings.update_rule) {
+            return Err(Error::UnavailableRule);
+        }
+        Ok(Self {
             attachment: Attachment::default(),
             level: Level::capped(settings.implementation),
             update_rule: settings.update_rule,
@@ -93,7 +98,7 @@ impl MaskedOcclusionCulling {
             buffer: None,
             counters: Counters::default(),
             recorder: Recorder::default(),
-        }
+        })
     }
 
     /// The instruction set in use.

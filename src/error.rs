@@ -20,8 +20,10 @@ pub enum Error {
     ListFull,
     /// The allocator returned null. The object keeps its previous buffer.
     OutOfMemory,
-    /// The pool has no object to draw into: see [`CullingThreadpool::set_buffer`](crate::CullingThreadpool::set_buffer).
+    /// The pool has no object to draw into: see `CullingThreadpool::set_buffer`.
     NoObject,
+    /// The library is compiled without the update rule: see [`UpdateRule::available`](crate::UpdateRule::available).
+    UnavailableRule,
 }
 
 impl fmt::Display for Error {
@@ -35,6 +37,7 @@ impl fmt::Display for Error {
             Error::ListFull => "a triangle list is full",
             Error::OutOfMemory => "out of memory",
             Error::NoObject => "the pool has no object to draw into",
+            Error::UnavailableRule => "the library is compiled without this update rule",
         })
     }
 }

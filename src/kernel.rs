@@ -20,7 +20,7 @@
 //! Everything that reaches the buffer is computed with the same operations in the same order on every instruction set,
 //! sub-tile by sub-tile; how many triangles are set up together makes no difference.
 
-#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2", feature = "pool"))]
 mod tests;
 
 use crate::CullingResult;

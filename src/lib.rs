@@ -33,13 +33,21 @@
 //! - `capi` (default): the C functions (`capi`), declared by the headers in `include/`. Without it, a Rust program
 //!   exports none.
 //! - `glam` (default): `glam::Mat4` can be used as a [`Matrix`]. Without it, use arrays.
+//! - `pool` (default): the thread pool, `CullingThreadpool`. `recorder` (default): recording and replay, `Recording`.
+//! - `sse41`, `avx2`, `avx512` (default): instruction sets of x86 above SSE2, from which the best is chosen at run
+//!   time. Other architectures have only one.
+//! - `quick`, `accurate`, `four-layer` (default): update rules besides the three-layer rule.
+//! - `scalar`: the scalar code is also compiled where the target has vector instructions, which only tests need. Other
+//!   targets always have it.
+//!
+//! `docs/platforms.md` has the size of the library with and without each.
 //!
 //! `src/kernel.rs` describes the path of a triangle, `src/buffer/mod.rs` the memory layout, `src/simd/mod.rs` the
 //! vector layer.
 #![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
-// Some functions exist only for C.
-#![cfg_attr(not(feature = "capi"), allow(dead_code))]
+// Some functions exist only for C, the pool or the recorder, some operations only for other instruction sets.
+#![cfg_attr(not(all(feature = "capi", feature = "pool", feature = "recorder", feature = "avx512")), allow(dead_code))]
 
 mod allocator;
 mod attachment;
@@ -54,8 +62,13 @@ mod float_environment;
 mod geometry;
 mod kernel;
 mod matrix;
+#[cfg(feature = "pool")]
 mod pool;
 mod raster;
+#[cfg(feature = "recorder")]
+mod recorder;
+#[cfg(not(feature = "recorder"))]
+#[path = "recorder/absent.rs"]
 mod recorder;
 mod settings;
 mod simd;
@@ -75,7 +88,9 @@ pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;
 pub use error::Error;
 pub use matrix::Matrix;
+#[cfg(feature = "pool")]
 pub use pool::{CullingThreadpool, Scope, ThreadStart, ThreadpoolSettings};
+#[cfg(feature = "recorder")]
 pub use recorder::{RecordedCall, RecordedMesh, RecordedRect, Recording, RecordingError};
 pub use settings::{DrawOptions, Settings};
 pub use transform::transform_vertices;

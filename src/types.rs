@@ -39,6 +39,21 @@ pub enum UpdateRule {
     FourLayer = 3,
 }
 
+impl UpdateRule {
+    /// The rules that the library is compiled with.
+    pub const fn available() -> &'static [UpdateRule] {
+        &[
+            Self::ThreeLayer,
+            #[cfg(feature = "quick")]
+            Self::Quick,
+            #[cfg(feature = "accurate")]
+            Self::Accurate,
+            #[cfg(feature = "four-layer")]
+            Self::FourLayer,
+        ]
+    }
+}
+
 /// The direction in which screen rows are counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(i32)]

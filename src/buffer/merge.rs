@@ -31,7 +31,7 @@ impl Job for Merge<'_> {
         for y in (tiles.y0..tiles.y1).step_by(T::LANES / SUB_TILES) {
             for from in self.from {
                 let row = Row { into, from, columns: tiles.x0..tiles.x1, y };
-                with_rule!(into.rule(), R => row.into_rule::<T, R>(s));
+                with_rule!(into.rule(), R => row.merge::<T, R>(s));
             }
         }
     }
@@ -47,12 +47,7 @@ struct Row<'a> {
 
 impl Row<'_> {
     #[inline(always)]
-    fn into_rule<T: Simd, R: Rule>(self, s: T) {
-        with_rule!(self.from.rule(), O => self.tiles::<T, R, O>(s));
-    }
-
-    #[inline(always)]
-    fn tiles<T: Simd, R: Rule, O: Rule>(self, s: T) {
+    fn merge<T: Simd, R: Rule>(self, s: T) {
         let Self { into, from, columns, y } = self;
         let alike = into.rule() == from.rule();
         for x in columns {
@@ -65,7 +60,12 @@ impl Row<'_> {
                 }
                 let at = TilePlace::new(into, x, y);
                 let mut planes = load::<T, R>(s, into, at, || y);
-                let theirs = load::<T, O>(s, from, other, || y);
+                // Chosen per tile, so that the code grows with the number of rules and not with its square.
+                let (theirs, layers, count) = with_rule!(from.rule(), O => {
+                    let theirs = load::<T, O>(s, from, other, || y);
+                    let layers = O::layers(s, &theirs);
+                    (theirs, layers, O::LAYERS)
+                });
                 // Depths behind the reference have no effect.
                 let nearest = s.max_positive(theirs.z0, theirs.z_near);
                 if s.all(s.le(nearest, planes.z0)) {
@@ -77,7 +77,7 @@ impl Row<'_> {
                 if alike && s.all(taken) {
                     planes = theirs;
                 } else {
-                    for &(mask, z) in &O::layers(s, &theirs)[..O::LAYERS] {
+                    for &(mask, z) in &layers[..count] {
                         R::insert(s, &mut planes, mask, z);
                     }
                     if alike {

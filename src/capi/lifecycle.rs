@@ -93,7 +93,7 @@ pub unsafe extern "C" fn MOC_Create(
             allocator,
             statistics: types::flag(settings.statistics, "statistics is neither 0 nor 1")?,
         };
-        let moc = MaskedOcclusionCulling::without_buffer(settings);
+        let moc = MaskedOcclusionCulling::without_buffer(settings)?;
         let place = allocator.allocate(object_layout()?)?.cast::<MaskedOcclusionCulling>().as_ptr();
         // SAFETY: `place` is fresh memory of the object's layout; `out` as above.
         unsafe {

@@ -21,10 +21,14 @@ mod lifecycle;
 mod mesh;
 mod messages;
 mod pointers;
+#[cfg(feature = "pool")]
 mod pool;
+#[cfg(feature = "pool")]
 mod pool_calls;
+#[cfg(feature = "pool")]
 mod pool_state;
 mod query;
+#[cfg(feature = "recorder")]
 mod recorder;
 mod refusal;
 mod status;
@@ -37,9 +41,12 @@ pub use draw::*;
 pub use lifecycle::*;
 pub use mesh::*;
 pub use messages::*;
+#[cfg(feature = "pool")]
 pub use pool::*;
+#[cfg(feature = "pool")]
 pub use pool_calls::*;
 pub use query::*;
+#[cfg(feature = "recorder")]
 pub use recorder::*;
 pub use status::*;
 pub use transform::*;

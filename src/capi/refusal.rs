@@ -1,8 +1,11 @@
 //! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong with it.
 
 use super::status::MOC_Status;
+use crate::Error;
+#[cfg(feature = "recorder")]
+use crate::RecordingError;
+#[cfg(feature = "pool")]
 use crate::attachment::Taken;
-use crate::{Error, RecordingError};
 
 /// A status and, if known here, which argument was wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,11 +66,16 @@ impl From<Error> for Refusal {
             Error::OutOfMemory => MOC_Status::MOC_STATUS_OUT_OF_MEMORY,
             // Pools of the C interface may also have an object without a buffer.
             Error::NoObject => MOC_Status::MOC_STATUS_NO_BUFFER,
+            Error::UnavailableRule => {
+                let why = "the library is compiled without this update_rule";
+                return Self::new(MOC_Status::MOC_STATUS_INVALID_ENUM, why);
+            }
         };
         status.into()
     }
 }
 
+#[cfg(feature = "recorder")]
 impl From<RecordingError> for Refusal {
     fn from(error: RecordingError) -> Self {
         let status = match error {
@@ -80,6 +88,7 @@ impl From<RecordingError> for Refusal {
     }
 }
 
+#[cfg(feature = "pool")]
 impl From<Taken> for Refusal {
     fn from(_: Taken) -> Self {
         Self::new(MOC_Status::MOC_STATUS_BUSY, "the object belongs to another pool")

@@ -10,9 +10,9 @@
 //! and `max` return their second operand if either is NaN (as on x86), division is IEEE division, nothing is fused
 //! (except in `mul_add_d`), and rounding to integers is to nearest even.
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2"))]
 mod avx2;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), feature = "avx512"))]
 mod avx512;
 mod compress;
 mod level;
@@ -39,7 +39,7 @@ use core::arch::x86 as arch;
 use core::arch::x86_64 as arch;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2"))]
 pub(crate) use level::with_sixteen_lanes;
 pub(crate) use level::{Level, run, run_on_eight_lanes};
 

@@ -1,9 +1,8 @@
 //! Compares every operation on every instruction set with the scalar one, bit by bit.
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2"))]
 use super::with_sixteen_lanes;
-use super::{Job, Level, Simd, run};
-use crate::Implementation;
+use super::{Job, Level, Simd, run, scalar};
 
 /// Sixteen lanes of input, as many as the widest vector has.
 const N: usize = 16;
@@ -213,14 +212,14 @@ fn every_instruction_set_agrees_with_scalar() {
             count: core::array::from_fn(|lane| if lane % 4 == 3 { bits.next() % 65536 } else { bits.next() % 33 }),
             index: core::array::from_fn(|_| bits.next() % N as u32),
         };
-        let expected = run(Level::capped(Implementation::Scalar), AllOperations(input));
+        let expected = scalar::enter(AllOperations(input));
         for level in Level::all() {
             let got = run(level, AllOperations(input));
             let same = expected == got;
             assert!(same, "{level:?}, round {round}:\n{expected:x?}\n{got:x?}");
         }
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if let Some(avx2) = Level::of(Implementation::Avx2) {
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2"))]
+        if let Some(avx2) = Level::of(crate::Implementation::Avx2) {
             let got = with_sixteen_lanes(|| run(avx2, AllOperations(input)));
             assert!(expected == got, "two vectors of AVX2, round {round}:\n{expected:x?}\n{got:x?}");
         }

@@ -1,7 +1,7 @@
 //! The accurate rule, after Andersson, Hasselgren, Akenine-Möller, "Masked Depth Culling for Graphics Hardware", 2015:
 //! of the reference, the working layer and the triangle, the two that are closest in depth are merged.
 
-use super::{Inserted, Planes, Rule, live, two_plane_layout};
+use super::{Inserted, Planes, Rule, live, two_planes::two_plane_layout};
 use crate::buffer::BLOCK;
 use crate::simd::Simd;
 

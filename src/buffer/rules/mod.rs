@@ -1,31 +1,46 @@
 //! Update rules: how the sub-tiles of a tile record a triangle and how they answer a query. A rule is one file and one
 //! line of [`with_rule`].
 
+#[cfg(feature = "accurate")]
 mod accurate;
+#[cfg(feature = "four-layer")]
 mod four_layer;
+#[cfg(feature = "quick")]
 mod quick;
-#[cfg(test)]
+#[cfg(all(test, feature = "quick", feature = "accurate", feature = "four-layer"))]
 mod tests;
 mod three_layer;
+#[cfg(any(feature = "quick", feature = "accurate"))]
+mod two_planes;
 
+#[cfg(feature = "accurate")]
 pub(crate) use accurate::Accurate;
+#[cfg(feature = "four-layer")]
 pub(crate) use four_layer::FourLayer;
+#[cfg(feature = "quick")]
 pub(crate) use quick::Quick;
 pub(crate) use three_layer::ThreeLayer;
 
 use crate::simd::Simd;
 
-/// Evaluates an expression with `$R` as the type of an update rule: the only place that distinguishes the rules.
+/// Evaluates an expression with `$R` as the type of an update rule: the only place that distinguishes the rules. No
+/// object has a rule whose feature is off.
 macro_rules! with_rule {
     ($rule:expr, $R:ident => $body:expr) => {
-        $crate::buffer::rules::with_rule!(@each $rule, $R => $body; ThreeLayer Quick Accurate FourLayer)
+        $crate::buffer::rules::with_rule!(
+            @each $rule, $R => $body;
+            ThreeLayer() Quick("quick") Accurate("accurate") FourLayer("four-layer")
+        )
     };
-    (@each $rule:expr, $R:ident => $body:expr; $($name:ident)*) => {
+    (@each $rule:expr, $R:ident => $body:expr; $($name:ident($($feature:literal)?))*) => {
         match $rule {
-            $($crate::UpdateRule::$name => {
+            $($(#[cfg(feature = $feature)])?
+            $crate::UpdateRule::$name => {
                 type $R = $crate::buffer::rules::$name;
                 $body
             })*
+            #[allow(unreachable_patterns)]
+            _ => unreachable!("an update rule whose feature is off"),
         }
     };
 }
@@ -102,64 +117,3 @@ pub(super) fn live<S: Simd>(s: S, z0: S::F, coverage: S::I, depth: S::F) -> S::M
 pub(super) fn behind_layer<S: Simd>(s: S, touched: S::I, depth: S::F, mask: S::I, z: S::F) -> S::M {
     s.and_m(s.eq_i(s.and_not(mask, touched), s.i(0)), s.lt(depth, z))
 }
-
-/// Loads and stores of the two rules that have one working layer, in `near`.
-macro_rules! two_plane_layout {
-    () => {
-        const PLANES: usize = 3;
-        const LAYERS: usize = 2;
-        const LAYER_PLANES: &[(usize, usize)] = &[(2, 1)];
-
-        #[inline(always)]
-        fn empty<S: Simd>(s: S) -> Planes<S> {
-            let (z, none) = (s.f(0.0), s.i(0));
-            Planes { z0: z, z_near: z, z_mid: z, z_far: z, near: none, mid: none, far: none }
-        }
-
-        #[inline(always)]
-        unsafe fn load<S: Simd>(s: S, p: *const u32) -> Planes<S> {
-            // SAFETY: the caller's contract.
-            let (z0, z_near, near) =
-                unsafe { (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()), s.load_i(p.add(2 * BLOCK))) };
-            Planes { z0, z_near, near, ..Self::empty(s) }
-        }
-
-        #[inline(always)]
-        unsafe fn store<S: Simd>(s: S, p: *mut u32, planes: &Planes<S>) {
-            // SAFETY: the caller's contract.
-            unsafe {
-                s.store_f(p.cast(), planes.z0);
-                s.store_f(p.add(BLOCK).cast(), planes.z_near);
-                s.store_i(p.add(2 * BLOCK), planes.near);
-            }
-        }
-
-        #[inline(always)]
-        unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
-            // SAFETY: the caller's contract.
-            unsafe {
-                let (z0, z_near) = (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()));
-                if !s.all(s.and_m(s.lt(z0, depth), s.lt(z_near, depth))) {
-                    return false;
-                }
-                // The result that the rule would give: the reference covers everything, and the layer is empty.
-                let planes = Planes { z0: depth, z_near: Self::left_behind(s, depth), ..Self::empty(s) };
-                Self::store(s, p, &planes);
-                true
-            }
-        }
-
-        #[inline(always)]
-        fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
-            let nothing = s.eq_i(touched, s.i(0));
-            let reference = s.or_m(nothing, s.lt(depth, planes.z0));
-            s.or_m(reference, $crate::buffer::rules::behind_layer(s, touched, depth, planes.near, planes.z_near))
-        }
-
-        #[inline(always)]
-        fn layers<S: Simd>(s: S, planes: &Planes<S>) -> [(S::I, S::F); 4] {
-            [(s.i(-1), planes.z0), (planes.near, planes.z_near), (s.i(0), planes.z0), (s.i(0), planes.z0)]
-        }
-    };
-}
-use two_plane_layout;

@@ -1,7 +1,7 @@
 //! The quick rule: Hasselgren, Andersson, Akenine-Möller, "Masked Software Occlusion Culling", HPG 2016, section 3.2.
 //! One working layer; a triangle far in front of it starts a new one.
 
-use super::{Inserted, Planes, Rule, live, two_plane_layout};
+use super::{Inserted, Planes, Rule, live, two_planes::two_plane_layout};
 use crate::buffer::BLOCK;
 use crate::simd::Simd;
 

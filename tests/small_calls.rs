@@ -1,4 +1,4 @@
-//! A few draws and queries with the scalar code only, small enough to run under Miri or valgrind.
+//! A few draws and queries with every rule on every instruction set, small enough to run under valgrind.
 
 use masked_occlusion_culling::{
     BackfaceWinding, ClipSpaceLayout, CullingResult::*, DrawOptions, Error, Implementation, MaskedOcclusionCulling,
@@ -8,20 +8,20 @@ use masked_occlusion_culling::{
 const SIZE: (u32, u32) = (64, 32);
 const PIXELS: usize = 64 * 32;
 
-fn object(update_rule: UpdateRule, y_axis: YAxis) -> MaskedOcclusionCulling {
-    let settings = Settings::default()
-        .with_implementation(Implementation::Scalar)
-        .with_update_rule(update_rule)
-        .with_y_axis(y_axis);
+fn object(implementation: Implementation, update_rule: UpdateRule, y_axis: YAxis) -> MaskedOcclusionCulling {
+    let settings =
+        Settings::default().with_implementation(implementation).with_update_rule(update_rule).with_y_axis(y_axis);
     let moc = MaskedOcclusionCulling::new(SIZE.0, SIZE.1, settings).unwrap();
-    assert_eq!(moc.implementation(), Implementation::Scalar);
+    assert_eq!(moc.implementation(), implementation);
     moc
 }
 
 fn every(test: impl Fn(MaskedOcclusionCulling)) {
-    for rule in [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer] {
-        for axis in [YAxis::Down, YAxis::Up] {
-            test(object(rule, axis));
+    for &implementation in Implementation::available() {
+        for &rule in UpdateRule::available() {
+            for axis in [YAxis::Down, YAxis::Up] {
+                test(object(implementation, rule, axis));
+            }
         }
     }
 }
@@ -122,7 +122,7 @@ fn bins_merging_and_transforming() {
         }
         let binned = covered(&moc);
         assert!(binned > 100, "{binned}");
-        let mut other = object(UpdateRule::ThreeLayer, moc.y_axis());
+        let mut other = object(moc.implementation(), UpdateRule::ThreeLayer, moc.y_axis());
         other.merge_buffer(&moc).unwrap();
         assert_eq!(covered(&other), binned);
         moc.clear_buffer();
