@@ -241,7 +241,8 @@ enum MOC_Implementation
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Plain code without explicit vector instructions: runs anywhere.
+     * Plain code without explicit vector instructions, for targets that have none. Elsewhere it is left out, and the
+     * simplest instruction set takes its place.
      */
     MOC_SCALAR = -1,
     /**
@@ -531,11 +532,11 @@ typedef struct MOC_Settings {
     uint32_t size;
     /**
      * A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. If it belongs to another
-     * architecture, anything but MOC_SCALAR allows the best available.
+     * architecture, it allows the best available.
      */
     int32_t implementation;
     /**
-     * A MOC_UpdateRule. Default MOC_UPDATE_RULE_THREE_LAYER.
+     * A MOC_UpdateRule that the library was compiled with (by default all). Default MOC_UPDATE_RULE_THREE_LAYER.
      */
     int32_t update_rule;
     /**

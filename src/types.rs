@@ -6,7 +6,8 @@
 #[repr(i32)]
 #[non_exhaustive]
 pub enum Implementation {
-    /// Plain code without explicit vector instructions: runs anywhere.
+    /// Plain code without explicit vector instructions, for targets that have none; elsewhere only with the feature
+    /// `scalar`.
     Scalar = -1,
     /// SSE2, the baseline of x86-64 and i686.
     Sse2 = 0,

@@ -13,7 +13,8 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum MOC_Implementation {
-    /// Plain code without explicit vector instructions: runs anywhere.
+    /// Plain code without explicit vector instructions, for targets that have none. Elsewhere it is left out, and the
+    /// simplest instruction set takes its place.
     MOC_SCALAR = -1,
     /// SSE2, the baseline of x86-64 and i686.
     MOC_SSE2 = 0,
@@ -126,9 +127,9 @@ pub struct MOC_Settings {
     /// sizeof(MOC_Settings).
     pub size: u32,
     /// A MOC_Implementation: the highest instruction set that may be used. Default MOC_AVX512. If it belongs to another
-    /// architecture, anything but MOC_SCALAR allows the best available.
+    /// architecture, it allows the best available.
     pub implementation: i32,
-    /// A MOC_UpdateRule. Default MOC_UPDATE_RULE_THREE_LAYER.
+    /// A MOC_UpdateRule that the library was compiled with (by default all). Default MOC_UPDATE_RULE_THREE_LAYER.
     pub update_rule: i32,
     /// A MOC_YAxis. Default MOC_Y_AXIS_DOWN.
     pub y_axis: i32,

@@ -4,7 +4,7 @@ use crate::CullingResult;
 use crate::source::Mesh;
 
 #[derive(Default)]
-pub(crate) struct Recorder;
+pub(crate) struct Recorder(());
 
 impl Recorder {
     pub fn is_on(&self) -> bool {

@@ -23,7 +23,7 @@ impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
         for block in self.triangles.flat_map(BinnedTriangles::blocks) {
             if block.both_sides != stream.both_sides() {
                 // Sinks of binned triangles accept all of them.
-                stream.submit(None, Drain::Everything)?;
+                stream.flush(Drain::Everything)?;
                 stream.set_both_sides(block.both_sides);
             }
             for (k, &reach) in block.reach(self.bin).iter().enumerate() {
@@ -37,7 +37,7 @@ impl<'k, I: Iterator<Item = &'k BinnedTriangles>> TriangleSource for Binned<I> {
                 // SAFETY: there is room, because the queue holds at most its capacity less a vector.
                 unsafe { stream.queue.append(s, lanes_of(s, u32::from(reach)), &corners) };
                 if stream.queue.len() > CAPACITY - MAX_LANES {
-                    stream.submit(None, Drain::FullVectors)?;
+                    stream.flush(Drain::FullVectors)?;
                 }
             }
         }

@@ -28,7 +28,7 @@ impl TriangleSource for &TriList<'_> {
             let end = self.len().min(position + CAPACITY);
             fetch(self, position..end, stream.queue, &mut stream.tally);
             position = end;
-            stream.submit(None, Drain::Everything)?;
+            stream.flush(Drain::Everything)?;
         }
         Ok(())
     }

@@ -90,6 +90,7 @@ impl TriangleSource for MeshTriangles<'_> {
         let screen = stream.setup.buffer.size();
         let mut memory = Scratch::uninit();
         let scratch = Scratch::of(&mut memory);
+        let mut in_view = false;
         let triangles = mesh.triangles.len() / 3;
         stream.tally.processed = triangles as u64;
         let (mut position, mut chunk) = (0, Chunk::NONE);
@@ -104,7 +105,7 @@ impl TriangleSource for MeshTriangles<'_> {
             // SAFETY: `count` triangles from `position` on are in the mesh, and their vertices are in the scratch.
             let packet = unsafe { Packet::new(s, mesh.triangles, position, count, chunk.numbering, facing, scratch) };
             let culled = packet.cull::<K::Coverage>(s, screen, camera, facing);
-            stream.in_view |= culled.in_view;
+            in_view |= culled.in_view;
             let kept = s.mask_bits(culled.kept);
             if culled.irregular == 0 {
                 if kept != 0 && triangles <= S::LANES {
@@ -138,7 +139,7 @@ impl TriangleSource for MeshTriangles<'_> {
                             Clipped::Polygon(polygon) => {
                                 let before = stream.queue.len();
                                 polygon.emit::<K::Coverage>(camera, facing, |triangle| stream.queue.push(triangle));
-                                stream.in_view |= stream.queue.len() > before;
+                                in_view |= stream.queue.len() > before;
                             }
                         }
                     }
@@ -146,9 +147,10 @@ impl TriangleSource for MeshTriangles<'_> {
             }
             position += count;
             if stream.queue.len() > FULL {
-                stream.submit(None, Drain::FullVectors)?;
+                stream.flush(Drain::FullVectors)?;
             }
         }
+        stream.in_view = in_view;
         Ok(())
     }
 }

@@ -18,7 +18,7 @@ use crate::CullingResult;
 use crate::buffer::Buffer;
 use crate::geometry::Corner;
 use crate::raster::{Setup, TriangleQueue};
-use crate::simd::Simd;
+use crate::simd::{Outlined, Simd};
 use crate::sink::{Memory, TriangleSink};
 use crate::statistics::Tally;
 
@@ -30,7 +30,7 @@ pub(crate) trait TriangleSource: Sized {
         false
     }
 
-    /// Queues all triangles, in order, and submits them when the queue is full. The only vector of a small call goes to
+    /// Queues all triangles, in order, and flushes the queue when it is full. The only vector of a small call goes to
     /// `direct` instead, which saves a round trip through memory.
     fn feed<S: Simd, K: TriangleSink>(
         self,
@@ -78,28 +78,43 @@ impl<S: Simd, K: TriangleSink> Stream<'_, S, K> {
         self.setup.both_sides = both_sides;
     }
 
-    /// Submits a vector, if there is one, and queued triangles to the sink.
+    /// Submits queued triangles to the sink.
     #[inline(always)]
-    pub fn submit(&mut self, mut direct: Option<Vector<S>>, drain: Drain) -> Result<(), Stopped> {
-        let s = self.setup.s;
-        let len = self.queue.len();
+    pub fn flush(&mut self, drain: Drain) -> Result<(), Stopped> {
+        if self.queue.len() == 0 {
+            return Ok(());
+        }
+        // Outlined: a queue is flushed rarely, and all sources share the code.
+        self.setup.s.outlined(Flush { stream: self, drain })
+    }
+
+    /// Submits a vector of triangles to the sink.
+    #[inline(always)]
+    fn submit(&mut self, (corners, active): Vector<S>) -> Result<(), Stopped> {
+        if self.sink.submit(self.setup, corners, active, self.memory, &mut self.tally) { Ok(()) } else { Err(Stopped) }
+    }
+}
+
+struct Flush<'f, 'a, S: Simd, K: TriangleSink> {
+    stream: &'f mut Stream<'a, S, K>,
+    drain: Drain,
+}
+
+impl<S: Simd, K: TriangleSink> Outlined<S> for Flush<'_, '_, S, K> {
+    type Output = Result<(), Stopped>;
+
+    #[inline(always)]
+    fn run(self, s: S) -> Self::Output {
+        let Self { stream, drain } = self;
+        let len = stream.queue.len();
         let end = if drain == Drain::Everything { len } else { len / S::LANES * S::LANES };
         let mut done = 0;
-        loop {
-            let (corners, active) = match direct.take() {
-                Some(vector) => vector,
-                None if done < end => {
-                    let vector = (self.queue.vector(s, done), s.first(end - done));
-                    done += S::LANES.min(end - done);
-                    vector
-                }
-                None => break,
-            };
-            if !self.sink.submit(self.setup, corners, active, self.memory, &mut self.tally) {
-                return Err(Stopped);
-            }
+        while done < end {
+            let vector = (stream.queue.vector(s, done), s.first(end - done));
+            done += S::LANES.min(end - done);
+            stream.submit(vector)?;
         }
-        self.queue.remove(s, end);
+        stream.queue.remove(s, end);
         Ok(())
     }
 }
@@ -125,7 +140,11 @@ pub(crate) fn drive<S: Simd, Q: TriangleSource, K: TriangleSink>(
     };
     let mut direct = None;
     let stopped = source.feed(s, &mut stream, &mut direct).is_err()
-        || stream.submit(direct, Drain::Everything).is_err()
+        || match direct {
+            Some(vector) => stream.submit(vector),
+            None => stream.flush(Drain::Everything),
+        }
+        .is_err()
         || stream.unprojectable;
     (stream.sink.result(stream.in_view, stopped), stream.tally)
 }
