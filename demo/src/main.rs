@@ -83,7 +83,12 @@ fn run(args: &Args) -> Result<()> {
         let size = (args.size.0 as usize, args.size.1 as usize);
         Ok(raster::falsely_hidden(&scene.objects, &hidden, size, &camera.clip_from_world(), camera.near))
     })?;
-    say(format_args!("falsely culled: {wrong} (objects with a visible pixel in a plain z-buffer)\n"));
+    let (width, height) = args.size;
+    say(format_args!(
+        "falsely culled: {wrong} (objects with a visible pixel in a plain z-buffer of {width}x{height})\n\
+         on a larger screen, a gap narrower than one of these pixels can close, and an object seen only through it be culled;\n\
+         docs/guide.md says what to do\n"
+    ));
 
     let (depth_file, culled_file) = (args.out.join("depth.png"), args.out.join("culled.png"));
     step("drawing the pictures", || {

@@ -73,63 +73,66 @@ pub fn write(found: &Findings) -> Result<String> {
                 p { (machine()) br; (day()) ", version " (library_version()) ", "
                     (found.settings) " settings a scene, medians of " (found.repeats) " repeats" }
                 @if let Some(caution) = found.caution() { p { strong { (caution) } } }
-                p { "Made by " code { "cargo tool report" (found.arguments) } ". Times of a machine that does other things, too, "
-                    "differ from run to run: compare those of a page with each other, not with those of another page." }
+                p { "Made by " code { "cargo tool report" (found.arguments) } ". Times from a machine that was also doing other work "
+                    "vary between runs: compare times within this page, not with those of another." }
 
                 h2 { "What is measured" }
-                p { "A scene is seen from one place or several. The occluders in view are drawn, then the rectangles of all objects in "
-                    "view and of small boxes strewn over the scene are tested. A z-buffer with a depth for each pixel of a screen of "
-                    "1920x1080, which shares no code with the library, says what is hidden: objects of which every pixel lies behind an "
-                    "occluder, and boxes whose rectangle lies behind it. Shares are the parts of those that are culled. "
-                    "\"Exact\" is what that z-buffer itself culls by rectangles; \"8x4 ceiling\" what it culls with only the least "
-                    "depth of each 8x4 pixels, which layers may exceed. \"Falsely\" counts what is culled and shows at the buffer's own resolution, which must be 0; "
-                    "\"on screen\" objects that show on the screen when the buffer has fewer pixels than it: a small buffer cannot know them. "
-                    "\"Leaking\" are pixels that claim less than half of the true 1/w." }
-                p { "In all of it: " b { (found.falsely()) } " falsely culled; " (found.same_bits()) " buffers compared between instruction "
-                    "sets and numbers of threads, " b { (found.other_bits()) } " of them different." }
+                p { "Each scene is viewed from one or more cameras. The occluders in view are drawn, then the rectangles of all objects in view, "
+                    "and of small boxes scattered through the scene, are tested. A z-buffer with one depth per pixel of a 1920x1080 screen, which "
+                    "shares no code with the library, determines what is hidden: an object if all of its pixels are behind an occluder, a box if "
+                    "its whole rectangle is. The shares are percentages of these hidden objects and boxes that were culled. "
+                    "\"Exact\" is what that z-buffer culls by rectangles; \"8x4 ceiling\" is what it culls when it keeps only the farthest "
+                    "depth of each 8x4 pixels, which a buffer with layers can exceed. \"Falsely\" counts what was culled although a pixel of it is "
+                    "visible at the buffer's own resolution: this must be 0. \"On screen\" counts culled objects with a visible pixel on the "
+                    "screen when the buffer is smaller than the screen, which such a buffer cannot know. \"Leaking\" pixels are those for which "
+                    "the buffer stores less than half of the true 1/w." }
+                p { "In total: " b { (found.falsely()) } " falsely culled; " (found.same_bits()) " buffers compared between instruction "
+                    "sets and thread counts, of which " b { (found.other_bits()) } " differ." }
 
                 h2 { "Speed against error" }
                 @for scatter in &scatters { (scatter) }
                 h3 { "Update rules" }
-                p { "Percent of the hidden objects / boxes culled at the largest resolution measured, and the time of a frame (draw and query) "
-                    "over that of the quick rule in the same order. One buffer, one thread." }
+                p { "Percentage of the hidden objects / boxes that were culled, at the largest resolution measured, and the time of a frame (draw and "
+                    "query) relative to the quick rule in the same order. One buffer, one thread." }
                 (table(&tables::rules(surveys)))
-                h3 { "What else can be set" }
-                p { "Means over scenes and orders: time of drawing over that of the plain setting (the largest resolution measured, one buffer, one thread, the best "
-                    "instruction set) with the same rule and order, and how many percent of the hidden objects and boxes more or less are culled. "
-                    "Where several buffers are merged, objects are dealt to them by how wide a range of depth they reach over." }
+                h3 { "Other settings" }
+                p { "Means over scenes and orders: drawing time relative to the plain setting (the largest resolution measured, one buffer, one "
+                    "thread, the best instruction set) with the same rule and order, and the change in the percentage of hidden objects and boxes "
+                    "that were culled. Where several buffers are merged, objects are assigned to buffers by the extent of their depth range." }
                 @for t in tables::effects(surveys) { (table(&t)) }
                 @for survey in surveys {
                     details { summary { "Every setting: " (survey.name) } (table(&tables::points(survey))) }
                 }
 
                 h2 { "Where pixels leak" }
-                p { "As figure 1 of Davies and Strugar's article of 2018: the exact depths, and in red the pixels for which the buffer claims less "
-                    "than half of the true 1/w, so that things far behind may count as seen. 1920x1080, front to back." }
+                p { "As in figure 1 of Davies and Strugar's article of 2018: the exact depths, with the pixels in red for which the buffer stores less "
+                    "than half of the true 1/w, so that objects far behind them may be reported visible. 1920x1080, front to back." }
                 @for picture in &pictures { (picture) }
 
                 h2 { "How cost grows" }
-                p { "Time of a frame against triangles, pixels, and sheets one behind the other; the z-buffer's with its reduction." }
+                p { "Frame time against the number of triangles, of pixels, and of layers of geometry behind each other. The z-buffer's time includes "
+                    "its reduction." }
                 @for svg in &found.scaling { (plot(svg.clone())) }
 
                 h2 { "The passes of a frame" }
-                p { "As table 1 of the HPG 2016 paper, for the first view of each scene, 1920x1080, the nearest first. The z-buffer of all pixels "
-                    "uses AVX-512, or AVX2 with fused multiply-add (below these it is not written with vectors), draws exact coverage, and reduces to the farthest depth of "
-                    "each 8x8 pixels. To have its passes apart the masked buffer is drawn by way of a list; \"in one go\" is the frame as an engine "
-                    "draws it. \"Culled\" counts rectangles of objects and boxes." }
+                p { "As in table 1 of the HPG 2016 paper, for the first view of each scene at 1920x1080, front to back. The z-buffer with one depth per "
+                    "pixel uses AVX-512, or AVX2 with fused multiply-add (without these it is scalar code), draws exact coverage, and is reduced to "
+                    "the farthest depth of each 8x8 pixels. To separate the passes, the masked buffer is drawn from a triangle list; \"in one go\" "
+                    "is the frame as an engine draws it. \"Culled\" counts rectangles of objects and boxes." }
                 @for (name, rows) in &found.passes { h3 { (name) } (table(&tables::passes(rows))) }
 
-                h2 { "Cost by the size of triangles" }
-                p { "As figure 11 of that paper: 32,768 right-angled isosceles triangles (fewer of the largest), anywhere on a screen of "
-                    (found.sizes_on.0) "x" (found.sizes_on.1) ", turned anyhow, back to front so that none is hidden; the clear, everything from transformation on, and the z-buffer's "
-                    "reduction. The masked buffer is drawn into through its C functions, which trust their indices; the z-buffer looks at them." }
+                h2 { "Cost by triangle size" }
+                p { "As in figure 11 of that paper: 32,768 right isosceles triangles (fewer of the largest), at random positions and angles on a "
+                    "screen of " (found.sizes_on.0) "x" (found.sizes_on.1) ", back to front so that none is hidden. Times include the clear, all "
+                    "steps from the vertex transform on, and the z-buffer's reduction. The masked buffer is drawn through the C functions that "
+                    "trust their indices; the z-buffer checks them." }
                 (per_triangle) (per_pixel)
                 (table(&tables::sizes(&found.sizes, &found.libraries)))
 
                 h2 { "Merging" }
-                p { "As table 1 of the article of 2018, for the generated landscape: terrain and foreground in a buffer each, and the time of "
-                    "merging them beside that of drawing both; then everything in one buffer. The last columns are the hidden boxes culled by the one "
-                    "buffer and by the merged one, and what should not have been." }
+                p { "As in table 1 of the article of 2018, for the generated landscape: terrain and foreground in separate buffers, with the time to merge "
+                    "them next to the time to draw both; then everything in one buffer. The last columns are the hidden boxes culled by the single "
+                    "buffer and by the merged one, and false culls." }
                 (table(&tables::merging(&found.merging)))
             }
         }
