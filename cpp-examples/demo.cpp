@@ -204,7 +204,7 @@ int main(int argc, char **argv) {
     const long long total = (long long)frame.results.size(), outside = count(Moc::VIEW_CULLED);
     const long long culled = count(Moc::OCCLUDED), visible = count(Moc::VISIBLE), inView = total - outside;
     std::printf("\n%-34s %10lld\n", "objects", total);
-    std::printf("  %-32s %10lld\n", "outside of the view", outside);
+    std::printf("  %-32s %10lld\n", "outside the view", outside);
     std::printf("  %-32s %10lld   %.1f%% of those in view\n", "culled", culled, inView ? 100.0 * culled / inView : 0.0);
     std::printf("  %-32s %10lld\n", "visible", visible);
     std::printf("occluders drawn, front to back     %10zu   %zu triangles\n\n", frame.occluders.size(),

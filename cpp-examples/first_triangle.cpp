@@ -7,7 +7,7 @@ static const char *Text(MaskedOcclusionCulling::CullingResult result) {
     switch (result) {
         case MaskedOcclusionCulling::VISIBLE: return "visible";
         case MaskedOcclusionCulling::OCCLUDED: return "occluded";
-        default: return "outside of the view";
+        default: return "outside the view";
     }
 }
 

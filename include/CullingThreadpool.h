@@ -1,7 +1,8 @@
 /*
  * CPU occlusion culling on a masked hierarchical depth buffer: a pool of threads that draw.
  *
- * Header-only over the C functions of masked_occlusion_culling.h. C++11; nothing here throws.
+ * Header-only over the C functions of masked_occlusion_culling.h. A library built without the feature `pool` lacks those of
+ * the pool, which shows when linking. C++11; nothing here throws.
  *
  *     CullingThreadpool pool(threads, 4, 4);
  *     moc->SetResolution(640, 360);

@@ -2,12 +2,14 @@
  * CPU occlusion culling on a masked hierarchical depth buffer: recorded frames, for playback.
  *
  * MaskedOcclusionCulling::RecorderStart and RecorderStop write an object's calls and their results to a file;
- * FrameRecording::Load reads it. Both are always available, whatever MOC_RECORDER_ENABLE and
- * MOC_RECORDER_ENABLE_PLAYBACK are, and cost a load and a branch per call while nothing is recorded. The file format is
- * that of Intel's library; docs/recordings.md specifies it byte by byte.
+ * FrameRecording::Load reads it. Both are available whatever MOC_RECORDER_ENABLE and
+ * MOC_RECORDER_ENABLE_PLAYBACK are, unless the library was built without the feature `recorder`, and cost a load and a
+ * branch per call while nothing is recorded. The file format is that of Intel's library; docs/recordings.md specifies it
+ * byte by byte.
  *
- * Header-only over the C functions of masked_occlusion_culling.h. C++11. Load throws only what std::vector throws when
- * there is no memory.
+ * Header-only over the C functions of masked_occlusion_culling.h. A library built without the feature `recorder` lacks
+ * those of the recorder, which shows when linking. C++11. Load throws only what std::vector throws when there is no
+ * memory.
  *
  * SPDX-License-Identifier: Apache-2.0 OR MIT
  */

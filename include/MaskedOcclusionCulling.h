@@ -12,10 +12,10 @@
  * ownership.
  *
  * Invalid input. Pointers must be null or valid. If an argument is refused (a required pointer is null, a count is
- * negative, a size is outside 1 to 16384, there is no buffer, an enumeration has no such value), a method without a
- * result does nothing, a query or a draw returns VISIBLE, and a method that returns a number returns 0. Nothing is
- * printed or thrown. GetLastStatus returns the status of the thread's last call; to learn which argument was wrong and
- * why, pass SetMessageCallback a function:
+ * negative, a size is outside 1 to 16384, there is no buffer, an enumeration argument has an unknown value), a
+ * method without a result does nothing, a query or a draw returns VISIBLE, and a method that returns a number returns 0.
+ * Nothing is printed or thrown. GetLastStatus returns the status of the thread's last call; to learn which argument
+ * was wrong and why, pass SetMessageCallback a function:
  *
  *     static void Say(void *, int, const char *message) { std::fprintf(stderr, "%s\n", message); }
  *     MaskedOcclusionCulling::SetMessageCallback(Say);
@@ -67,8 +67,9 @@ extern "C++" {
  * false, and -Wundef reports it. Define both for the previous behaviour.
  *
  * Accepted without effect, because they always hold: PRECISE_COVERAGE (coverage is exact), CLIPPING_PRESERVES_ORDER
- * (the order is preserved), MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is always available and
- * costs a load and a branch per call while it is off; FrameRecorder.h reads recordings).
+ * (the order is preserved), MOC_RECORDER_ENABLE and MOC_RECORDER_ENABLE_PLAYBACK (the recorder is always available,
+ * unless the library was built without the feature `recorder`, and costs a load and a branch per call while it is off;
+ * FrameRecorder.h reads recordings).
  */
 #ifndef USE_D3D
 #define USE_D3D 1
@@ -243,7 +244,8 @@ public:
 
     /*
      * Creates an object without a buffer, on the best instruction set that the processor supports and the argument
-     * allows. Null if there is no memory, or if the library's version does not match this header.
+     * allows. Null if there is no memory, if the library's version does not match this header, or if the library was
+     * built without the update rule that the switches select.
      *
      * The template argument carries the switches of the calling translation unit; leave it out. Its default differs
      * between translation units with different switches, which formally violates the one-definition rule; in practice
@@ -292,8 +294,8 @@ public:
 
     /**
      * Gives the object a cleared buffer, 1 to 16384 pixels wide and high. If the size is refused or there is no memory, it
-     * keeps its old buffer. In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can
-     * close, and hide what the screen shows through it (docs/guide.md).
+     * keeps its old buffer. In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel
+     * can disappear, and what the screen shows through it is then culled (docs/guide.md).
      */
     MOC_DETAIL_INLINE void SetResolution(unsigned int width, unsigned int height)
     {

@@ -52,6 +52,8 @@ template <class Unused> struct MOC_DetailImplementations
         _MOC_SIMD128 MOC_DETAIL_QUIET = MOC_SIMD128
 #endif
     };
+    /** The simplest instruction set of the target (SSE2, NEON or simd128), unless the library was built with the feature
+     * `scalar` or the target has none: then plain code. */
     static constexpr Implementation SCALAR  = static_cast<Implementation>(MOC_SCALAR);
     static constexpr Implementation NEON    = static_cast<Implementation>(MOC_NEON);
     static constexpr Implementation SIMD128 = static_cast<Implementation>(MOC_SIMD128);

@@ -68,6 +68,9 @@
  * harm; the text above it says whether null is refused. Indices are trusted, too, unless a MOC_Mesh gives the number of
  * vertices; functions whose names end in Checked take the length of the array and check every index.
  *
+ * Features. A library built without the feature `pool` or `recorder` lacks the functions of the pool or of the recorder,
+ * which shows when linking.
+ *
  * Structs that may grow begin with their `size`, which the caller sets: MOC_Settings settings = {.size = sizeof
  * settings}. A program compiled with an older header passes a smaller size, and nothing beyond it is read or written. A
  * size smaller than that of the first version is refused with MOC_STATUS_INVALID_SIZE.
@@ -946,9 +949,9 @@ MOC_Status MOC_Destroy(MaskedOcclusionCulling *moc);
  * MOC_UPDATE_RULE_ACCURATE, 28 with MOC_UPDATE_RULE_FOUR_LAYER).
  *
  * The buffer may be smaller than the screen: that is faster and culls less. But MOC_OCCLUDED then means hidden at the
- * buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the
- * screen shows through it. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen pixels can close.
- * docs/guide.md says what to do about it.
+ * buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can disappear in the buffer,
+ * and what the screen shows through it is then culled. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen
+ * pixels can disappear. docs/guide.md says what to do about it.
  *
  * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is
  * drawing into the object. On an error the object keeps its old buffer.

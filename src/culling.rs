@@ -25,7 +25,7 @@ use crate::{
     UpdateRule, Vertices, YAxis,
 };
 
-const NO_BUFFER: &str = "an object without a buffer is used by functions that check for it first";
+const NO_BUFFER: &str = "no buffer: callers must check `has_buffer` first";
 
 /// A masked hierarchical depth buffer to draw occluders into and to test occludees against.
 ///
@@ -124,8 +124,8 @@ impl MaskedOcclusionCulling {
     /// Gives the object a clear buffer of `width` by `height` pixels, each from 1 to 16,384. If the size is unchanged,
     /// this only clears the buffer.
     ///
-    /// In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can close, and
-    /// hide what is seen through it on the screen; `docs/guide.md` says how to handle this.
+    /// In a buffer smaller than the screen, a gap between occluders that is narrower than a buffer pixel can disappear,
+    /// and what is seen through it on the screen is then culled; `docs/guide.md` says how to handle this.
     ///
     /// # Errors
     /// [`Error::InvalidSize`], [`Error::OutOfMemory`]: the object keeps its previous buffer.

@@ -32,7 +32,7 @@ impl fmt::Display for Error {
             Error::InvalidSize => "a size, count or rectangle is out of range",
             Error::InvalidNumber => "a number is not finite",
             Error::InvalidLayout => "the stride or an offset of a vertex layout is negative",
-            Error::IndexOutOfRange => "an index names a vertex that does not exist",
+            Error::IndexOutOfRange => "an index refers to a vertex that does not exist",
             Error::SizeMismatch => "the two buffers differ in resolution or row direction",
             Error::ListFull => "a triangle list is full",
             Error::OutOfMemory => "out of memory",

@@ -30,13 +30,15 @@
 //!
 //! # Features
 //!
-//! - `capi` (default): the C functions (`capi`), declared by the headers in `include/`. Without it, a Rust program
-//!   exports none.
-//! - `glam` (default): `glam::Mat4` can be used as a [`Matrix`]. Without it, use arrays.
-//! - `pool` (default): the thread pool, `CullingThreadpool`. `recorder` (default): recording and replay, `Recording`.
-//! - `sse41`, `avx2`, `avx512` (default): instruction sets of x86 above SSE2, from which the best is chosen at run
-//!   time. Other architectures have only one.
-//! - `quick`, `accurate`, `four-layer` (default): update rules besides the three-layer rule.
+//! All but `scalar` are on by default. To leave some out, list the others:
+//! `{ version = "0.2", default-features = false, features = ["pool", "avx512"] }`.
+//!
+//! - `capi`: the C functions (`capi`), declared by the headers in `include/`. Without it, a Rust program exports none.
+//! - `glam`: `glam::Mat4` can be used as a [`Matrix`]. Without it, use arrays.
+//! - `pool`: the thread pool, `CullingThreadpool`. `recorder`: recording and replay, `Recording`.
+//! - `sse41`, `avx2`, `avx512` (includes `avx2`): instruction sets of x86 above SSE2, from which the best is chosen at
+//!   run time. Other architectures have only one.
+//! - `quick`, `accurate`, `four-layer`: update rules besides the three-layer rule.
 //! - `scalar`: the scalar code is also compiled where the target has vector instructions, which only tests need. Other
 //!   targets always have it.
 //!
@@ -47,7 +49,18 @@
 #![warn(missing_debug_implementations, missing_docs)]
 #![deny(unsafe_op_in_unsafe_fn)]
 // Some functions exist only for C, the pool or the recorder, some operations only for other instruction sets.
-#![cfg_attr(not(all(feature = "capi", feature = "pool", feature = "recorder", feature = "avx512")), allow(dead_code))]
+#![cfg_attr(
+    not(all(
+        feature = "capi",
+        feature = "pool",
+        feature = "recorder",
+        feature = "sse41",
+        feature = "avx512",
+        feature = "quick",
+        feature = "accurate"
+    )),
+    allow(dead_code)
+)]
 
 mod allocator;
 mod attachment;
@@ -83,7 +96,7 @@ mod vertices;
 #[cfg(feature = "glam")]
 pub use glam;
 
-pub use allocator::Allocator;
+pub use allocator::{AlignedAlloc, AlignedFree, Allocator};
 pub use bins::TriList;
 pub use culling::MaskedOcclusionCulling;
 pub use error::Error;

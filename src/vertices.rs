@@ -193,8 +193,8 @@ pub(crate) fn vertex_count(bytes: usize, layout: VertexLayout) -> Result<usize, 
     })
 }
 
-/// The pointer form that the kernel reads. Whoever creates one guarantees that every vertex that an index refers to can
-/// be read at `base + index * stride`, `+ offset_y` and `+ offset_zw`.
+/// The pointer form that the kernel reads: vertex `i` is at `base + i * stride`. `Mesh::new` states what must be
+/// readable.
 #[derive(Clone, Copy)]
 pub(crate) struct VertexSource {
     pub base: *const u8,

@@ -3,7 +3,7 @@
 //! programs keep working. `UPDATE_ABI=1 cargo test --test abi` adds new entries; existing entries are removed or
 //! changed by hand, together with MOC_ABI_VERSION. The list is for 64-bit pointers; `tests/abi-32.txt` has the
 //! differences with 32-bit ones (run by `.ci/i686`).
-#![cfg(all(target_os = "linux", feature = "capi"))]
+#![cfg(all(target_os = "linux", feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

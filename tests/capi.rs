@@ -1,6 +1,6 @@
 //! Compiles the programs of `capi-tests` with the installed C and C++ compilers, as a user of the library would, and
 //! runs them with the shared and the static library.
-#![cfg(all(unix, feature = "capi"))]
+#![cfg(all(unix, feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

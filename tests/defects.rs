@@ -191,7 +191,7 @@ fn d07_triangles_that_leave_the_screen_keep_their_edges() {
     let mut objects: Vec<_> =
         Implementation::available().iter().map(|&i| object(i, UpdateRule::ThreeLayer, YAxis::Down, size)).collect();
     let mut depth = Vec::new();
-    for case in 0..300 {
+    for case in 0..75 * objects.len() {
         let t = [(); 3].map(|()| {
             let (x, y) = (numbers.within(-end, 2 * end), numbers.within(-end, 2 * end));
             oracle::Vertex { x, y, z: 0.5f64.powi(numbers.within(0, 6) as i32) }

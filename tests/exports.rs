@@ -1,5 +1,5 @@
 //! The shared library exports the functions of the header and nothing else.
-#![cfg(all(target_os = "linux", feature = "capi"))]
+#![cfg(all(target_os = "linux", feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

@@ -1,6 +1,6 @@
 //! Everything that programs written for Intel MOC do with its headers compiles with this library's, without warnings,
 //! on every installed compiler and with each standard from C++11 on.
-#![cfg(all(unix, feature = "capi"))]
+#![cfg(all(unix, feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

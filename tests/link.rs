@@ -1,6 +1,6 @@
 //! Programs with a header that declares a class with virtual methods, which cannot change, link the files of `link` and
 //! run. The header is written for these tests (`capi-tests/abstract_header`), with the methods in the order of Intel's.
-#![cfg(feature = "capi")]
+#![cfg(all(feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

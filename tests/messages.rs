@@ -1,6 +1,6 @@
 //! Every function that can reject a call reports it under its own name.
 
-#![cfg(all(target_os = "linux", feature = "capi"))]
+#![cfg(all(target_os = "linux", feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

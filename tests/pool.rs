@@ -1,5 +1,6 @@
 //! The thread pool: the same bits as one thread whatever the threads do, and no order of calls that hangs, loses
 //! anything, or lets cleared contents hide anything.
+#![cfg(feature = "pool")]
 
 mod scenes;
 

@@ -1,7 +1,7 @@
 //! Programs compiled for a library with a prefix (`MOC_SYMBOL_PREFIX`): the symbols that they call and define, and that
 //! all names of the library's functions are free for the program. `.ci/prefix` builds such a library, then links and
 //! runs programs with it.
-#![cfg(all(target_os = "linux", feature = "capi"))]
+#![cfg(all(target_os = "linux", feature = "capi", feature = "pool", feature = "recorder"))]
 
 mod native;
 

@@ -1,5 +1,6 @@
 //! Recordings match the format to the byte, replay with the same answers and depths, and are rejected if truncated or
 //! corrupt.
+#![cfg(feature = "recorder")]
 
 use fastrand::Rng;
 use masked_occlusion_culling::{

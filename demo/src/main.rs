@@ -86,8 +86,8 @@ fn run(args: &Args) -> Result<()> {
     let (width, height) = args.size;
     say(format_args!(
         "falsely culled: {wrong} (objects with a visible pixel in a plain z-buffer of {width}x{height})\n\
-         on a larger screen, a gap narrower than one of these pixels can close, and an object seen only through it be culled;\n\
-         docs/guide.md says what to do\n"
+         On a larger screen, an object visible only through a gap narrower than one of these pixels can be culled: \
+         see docs/guide.md.\n"
     ));
 
     let (depth_file, culled_file) = (args.out.join("depth.png"), args.out.join("culled.png"));

@@ -55,9 +55,9 @@ pub fn isa(text: &str) -> Result<Isa, String> {
     let available = Isa::available();
     available.iter().copied().find(|isa| isa.name() == text).ok_or_else(|| {
         let known = Isa::value_variants().iter().any(|isa| isa.name() == text);
-        let what = if known { "this processor does not have it" } else { "there is no such instruction set" };
+        let what = if known { "not in this build or not on this processor" } else { "no such instruction set" };
         let names: Vec<String> = available.iter().map(|isa| isa.name()).collect();
-        format!("{what}; it has {}", names.join(", "))
+        format!("{what}; available: {}", names.join(", "))
     })
 }
 
@@ -102,7 +102,7 @@ mod tests {
             assert_eq!(isa(&own.name()), Ok(own));
         }
         let foreign = if cfg!(target_arch = "aarch64") { "avx2" } else { "neon" };
-        for (name, reason) in [(foreign, "does not have it"), ("mmx", "no such")] {
+        for (name, reason) in [(foreign, "not on this processor"), ("mmx", "no such")] {
             let error = isa(name).unwrap_err();
             assert!(error.contains(reason) && error.contains(&Isa::available()[0].name()), "{error}");
         }

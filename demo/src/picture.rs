@@ -51,7 +51,7 @@ pub fn compose(scene: &Scene, camera: &Camera, outcome: &Outcome, size: (u32, u3
             ("from above: ", WHITE),
             (&format!("{drawn} drawn "), DRAWN),
             (&format!("{culled} culled "), CULLED),
-            (&format!("{outside} outside of the view"), OUTSIDE),
+            (&format!("{outside} outside the view"), OUTSIDE),
         ],
     );
     for i in 0..WIDTH * 2 {

@@ -69,7 +69,7 @@ fn check(recording: &Recording, moc: &mut MaskedOcclusionCulling) -> crate::Resu
     }
     say(&format!("answers: {known} recorded, {differ} differ"));
     if number == 0 {
-        say("it holds no call");
+        say("the recording contains no calls");
     }
     Ok(differ)
 }
@@ -159,7 +159,7 @@ fn name(result: CullingResult) -> &'static str {
     match result {
         CullingResult::Visible => "visible",
         CullingResult::Occluded => "occluded",
-        CullingResult::ViewCulled => "outside of the view",
+        CullingResult::ViewCulled => "outside the view",
     }
 }
 

@@ -136,7 +136,7 @@ mod tests {
     fn check(who: &str, refresh: impl Fn(Refresh<'_>)) {
         let mut random = fastrand::Rng::with_seed(1);
         for (width, height) in [(1, 1), (33, 9), (1920, 1080), (2050, 70), (16_384, 8), (40, 16_384)] {
-            let buffer = Buffer::new(width, height, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+            let buffer = Buffer::new(width, height, UpdateRule::ThreeLayer, Allocator::SYSTEM, false).unwrap();
             let (tiles_w, tiles_h) = (buffer.tiles_w, buffer.tiles_h);
             let (coarse_w, coarse_h) = counts(tiles_w, tiles_h);
             // SAFETY (of all blocks): tiles and cells of a buffer that nobody else accesses.
@@ -182,7 +182,7 @@ mod tests {
         for level in Level::all() {
             check(&format!("{level:?}"), |job| simd::run(level, job));
         }
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), feature = "avx2"))]
         if let Some(avx2) = Level::of(crate::Implementation::Avx2) {
             check("sixteen lanes", |job| simd::with_sixteen_lanes(|| simd::run(avx2, job)));
         }

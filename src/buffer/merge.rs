@@ -7,11 +7,11 @@ use super::tile::choose;
 use super::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
 use crate::simd::{self, Job, Level, Simd};
 
-/// Merges buffers into a region of another, one after the other. All have the same size, and the region begins and ends
-/// at block boundaries or at the buffer's edge.
+/// Merges buffers into a region of another, one after the other.
 ///
 /// # Safety
-/// Nobody draws into the source buffers.
+/// All buffers have the same size, and nobody draws into the source buffers. The region begins and ends at block
+/// boundaries or at the buffer's edge.
 pub(crate) unsafe fn merge(level: Level, into: Region<'_>, from: &[&Buffer]) {
     simd::run(level, Merge { into, from });
 }
@@ -51,8 +51,8 @@ impl Row<'_> {
         let Self { into, from, columns, y } = self;
         let alike = into.rule() == from.rule();
         for x in columns {
-            // SAFETY: it is a tile of both buffers, which have the same size; where vectors cover a block, `y` is the
-            // block's row. The caller guarantees exclusive access. Both buffers were made for their rules.
+            // SAFETY: by the contract of `merge`, it is a tile of both buffers, and where vectors cover a block, `y` is the
+            // block's row. The region carries exclusive access. Both buffers were made for their rules.
             unsafe {
                 let other = TilePlace::new(from, x, y);
                 if ClearState::of::<T>(other).none_drawn() {

@@ -60,11 +60,12 @@ impl<'a> Region<'a> {
     }
 
     /// Clears the tiles to infinitely far. The region must consist of whole coarse cells.
+    ///
+    /// # Panics
+    /// If it does not.
     pub fn clear(&mut self) {
         let Self { buffer, tiles, .. } = *self;
-        if let Some(since_refresh) = &mut self.since_refresh {
-            **since_refresh = 0;
-        }
+        **self.since_refresh.as_mut().expect("a region of whole coarse cells") = 0;
         // In whole blocks: the lower tiles of the last row may be below the screen.
         for y in tiles.y0..tiles.y1.next_multiple_of(2) {
             for x in tiles.x0..tiles.x1 {

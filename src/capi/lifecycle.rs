@@ -133,9 +133,9 @@ pub(super) const RESOLUTION: &str = "width and height must be from 1 to 16384";
 /// MOC_UPDATE_RULE_ACCURATE, 28 with MOC_UPDATE_RULE_FOUR_LAYER).
 ///
 /// The buffer may be smaller than the screen: that is faster and culls less. But MOC_OCCLUDED then means hidden at the
-/// buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can close, and hide what the
-/// screen shows through it. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen pixels can close.
-/// docs/guide.md says what to do about it.
+/// buffer's pixel centres: a gap between occluders that is narrower than a buffer pixel can disappear in the buffer,
+/// and what the screen shows through it is then culled. At 320x180 for a screen of 1920x1080, gaps of up to 5 screen
+/// pixels can disappear. docs/guide.md says what to do about it.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_SIZE, MOC_STATUS_OUT_OF_MEMORY, MOC_STATUS_BUSY while a pool is
 /// drawing into the object. On an error the object keeps its old buffer.

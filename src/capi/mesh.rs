@@ -240,7 +240,7 @@ impl CheckedMesh<'_> {
     #[inline(always)]
     pub fn mesh(&self) -> Mesh<'_> {
         let Self { vertices, triangles, matrix, options } = self;
-        // SAFETY: by the contract of `Describe::check`, every vertex that an index refers to can be read.
+        // SAFETY: by the contract of `Describe::check`, the vertices from the lowest to the highest index can be read.
         unsafe { Mesh::new(*vertices, matrix.as_ref(), triangles, options) }
     }
 }

@@ -92,7 +92,7 @@ pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, p
     let start = || -> Result<(), Refusal> {
         unsafe { with_buffer(object(moc)?)?.recorder_start(self::path(path)?).map_err(Refusal::from) }
     };
-    guard(|| start().because(MOC_Status::MOC_STATUS_BUSY, "a recording is under way already"))
+    guard(|| start().because(MOC_Status::MOC_STATUS_BUSY, "already recording"))
 }
 
 /// Ends the recording; does nothing if there is none. Destroying an object also ends its recording.

@@ -32,7 +32,7 @@ impl Refusal {
                 "a vertex layout is not accepted, or a pointer is misaligned"
             }
             (None, MOC_Status::MOC_STATUS_NO_BUFFER) => "no buffer: call MOC_SetResolution first",
-            (None, MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE) => "an index names a vertex that does not exist",
+            (None, MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE) => "an index refers to a vertex that does not exist",
             (None, MOC_Status::MOC_STATUS_SIZE_MISMATCH) => "the two buffers differ in resolution or row direction",
             (None, MOC_Status::MOC_STATUS_LIST_FULL) => {
                 "a triangle list is full: triangles that did not fit are not drawn"

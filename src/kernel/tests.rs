@@ -15,8 +15,6 @@ use crate::{
 };
 use scenes::Scene;
 
-const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, UpdateRule::Accurate, UpdateRule::FourLayer];
-
 /// How an object is constructed, and its size.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
@@ -41,7 +39,7 @@ impl Setting {
 /// outside, and more columns than a vector has lanes.
 fn settings() -> Vec<Setting> {
     let mut all = Vec::new();
-    for update_rule in RULES {
+    for &update_rule in UpdateRule::available() {
         for (y_axis, statistics, size) in [
             (YAxis::Down, true, (333, 205)),
             (YAxis::Up, false, (420, 235)),

@@ -91,9 +91,12 @@ impl Batch {
     }
 
     /// First and last column and row of tiles of a triangle's bounds.
+    ///
+    /// # Safety
+    /// Set-up has stored the batch.
     #[inline(always)]
-    pub fn tiles(&self, lane: usize) -> [u32; 4] {
-        // SAFETY: set-up stores the tiles of all bounds.
+    pub unsafe fn tiles(&self, lane: usize) -> [u32; 4] {
+        // SAFETY: set-up stores the tiles of all lanes; the caller's contract.
         unsafe { [self.tile_x0.get(lane), self.tile_x1.get(lane), self.tile_y0.get(lane), self.tile_y1.get(lane)] }
     }
 }

@@ -1,7 +1,6 @@
 //! Rasterises vectors of triangles: set-up, the tile rows that they reach, and an operation in each tile.
 
 pub(crate) mod batch;
-mod candidate_tiles;
 pub(crate) mod hiz_test;
 pub(crate) mod queue;
 pub(crate) mod setup;

@@ -109,7 +109,8 @@ impl<S: Simd> Oriented<S> {
         let mut lanes = s.mask_bits(alive);
         if wide != 0 {
             // For a triangle this wide, the sign of the area may be wrong in f64.
-            lanes = wide_edges::correct_facing(batch, lanes, wide & s.mask_bits(inside));
+            // SAFETY: as there are wide triangles, the corners were stored above.
+            lanes = unsafe { wide_edges::correct_facing(batch, lanes, wide & s.mask_bits(inside)) };
         }
         // SAFETY: as above.
         unsafe {
@@ -148,7 +149,8 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
 ) -> Alive {
     let Setup { s, buffer, both_sides } = setup;
     let bounds = ScreenBounds::new::<C>(s, buffer.size(), &corners);
-    // SAFETY: a draw has exclusive access to the scope's tiles; for a query, see `kernel::test`.
+    // SAFETY: `z_min` is read word by word, which is allowed while others draw (see `Region`); the scope's tiles are the
+    // buffer's.
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
     if skip_hidden && s.mask_bits(s.and_m(active, bounds.inside)) & !hidden == 0 {
         return Alive::default();
@@ -227,7 +229,8 @@ fn edges_and_depth<S: Simd, C: Coverage>(
     store!(i column0, column0);
     store!(i column1, column1);
     if C::MAY_BE_WIDE {
-        wide_edges::replace_wide(batch, wide);
+        // SAFETY: where there are wide triangles, `Oriented::facing` stored the corners.
+        unsafe { wide_edges::replace_wide(batch, wide) };
     }
 
     // Depth plane.
@@ -351,7 +354,7 @@ mod tests {
     /// Compares a row's events with the exact top-left rule at every pixel near them.
     #[test]
     fn events_are_exact() {
-        let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+        let buffer = Buffer::new(640, 400, UpdateRule::ThreeLayer, Allocator::SYSTEM, false).unwrap();
         for level in Level::all() {
             let mut rng = Rng::with_seed(4);
             let mut rows = 0;
@@ -398,7 +401,7 @@ mod tests {
 
     /// Compares the depth bound at every corner of a few sub-tiles with the plane in f64.
     fn bounds_hold<C: Coverage>(size: i32, holds: impl Fn(f64, f64) -> bool) {
-        let buffer = Buffer::new(640, 400, UpdateRule::Quick, Allocator::SYSTEM, false).unwrap();
+        let buffer = Buffer::new(640, 400, UpdateRule::ThreeLayer, Allocator::SYSTEM, false).unwrap();
         for level in Level::all() {
             let (mut rng, mut compared) = (Rng::with_seed(5), 0);
             for _ in 0..100 {
@@ -414,7 +417,8 @@ mod tests {
                     // SAFETY: set-up stored the lane.
                     let [z, z_across, z_down] =
                         unsafe { [batch.z.get(lane), batch.z_across.get(lane), batch.z_down.get(lane)] };
-                    let [tile_x0, _, tile_y0, _] = batch.tiles(lane);
+                    // SAFETY: it was set up.
+                    let [tile_x0, _, tile_y0, _] = unsafe { batch.tiles(lane) };
                     for (column, row) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
                         let bound = f64::from(z + z_down * row as f32 + z_across * column as f32);
                         for (x, y) in [(0, 0), (8, 0), (0, 4), (8, 4)] {

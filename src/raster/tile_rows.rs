@@ -5,13 +5,15 @@
 //! on the scene. The bounds are computed from the edges in f32 and widened by the rounding error, so they may include a
 //! tile too many but never miss one.
 
+mod candidate_tiles;
+
 use core::mem::MaybeUninit;
 
 use super::batch::{Batch, Lanes};
-use super::candidate_tiles::{CandidateTiles, HALF_SHIFT, planes_before};
 use super::tile_op::TileOp;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{MAX_LANES, Simd};
+use candidate_tiles::{CandidateTiles, HALF_SHIFT, planes_before};
 
 /// Tile rows processed at a time, which is about ten triangles. Sixteen is measurably slower; more than 32 gains
 /// nothing.
@@ -51,29 +53,29 @@ pub(super) struct TileRowLists {
     upper: Floats,
     lower: Floats,
     /// Of the first row of tiles at column 0: the byte offset of the planes, and the tile index.
-    pub(super) planes: Words,
-    pub(super) index: Words,
+    planes: Words,
+    index: Words,
     /// First column and number of the fully covered tiles.
-    pub(super) inner_first: Words,
-    pub(super) inner: Words,
+    inner_first: Words,
+    inner: Words,
     /// Its first row of pixels, and the number of rows of sub-tiles from the first tile of the bounds to it.
     top: Floats,
     sub_row: Words,
     /// The depth bound's change per sub-tile, its limit, and the number of sub-tiles left of the bounds' first tile.
     across: Floats,
     limit: Floats,
-    pub(super) sub_column: Words,
+    sub_column: Words,
     /// For each triangle: its lane and first row, and its number of rows.
     first_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     rows_of_triangle: [MaybeUninit<u32>; MAX_LANES],
     /// Tile rows with a candidate tile.
     with_candidates: [MaybeUninit<u32>; TILE_ROWS + 1],
-    pub(super) tiles: CandidateTiles,
+    tiles: CandidateTiles,
 }
 
 /// The tile rows of some triangles, and how far they have been processed.
 pub(super) struct TileRows<'a> {
-    pub(super) lists: &'a mut TileRowLists,
+    lists: &'a mut TileRowLists,
     /// Triangles whose tile rows are not listed yet, and the row at which the first of them continues.
     todo: u32,
     row: u32,
@@ -89,8 +91,10 @@ pub(super) struct Candidates {
 }
 
 impl<'a> TileRows<'a> {
+    /// # Safety
+    /// Set-up stored the lanes `triangles` of the batch; the clip consists of tiles of the buffer.
     #[inline(always)]
-    pub fn new<T: Simd>(
+    pub unsafe fn new<T: Simd>(
         t: T,
         lists: &'a mut MaybeUninit<TileRowLists>,
         clip: TileRect,
@@ -123,24 +127,33 @@ impl<'a> TileRows<'a> {
     }
 
     /// Lane of the triangle, and tile row in units of a vector's height.
+    ///
+    /// # Safety
+    /// `next` listed the tile row.
     #[inline(always)]
-    pub fn place(&self, tile_row: usize) -> (usize, u32) {
-        // SAFETY: the tile rows up to `listed` were written, and callers ask for no others.
+    pub unsafe fn place(&self, tile_row: usize) -> (usize, u32) {
+        // SAFETY: those were written; the caller's contract.
         let word = unsafe { self.lists.place.get_unchecked(tile_row).assume_init() };
         unpack(word)
     }
 
     /// The index of the `k`th tile row that has a candidate.
+    ///
+    /// # Safety
+    /// `next` counted it.
     #[inline(always)]
-    pub fn with_candidates(&self, k: usize) -> usize {
-        // SAFETY: callers only ask for rows that `next` counted.
+    pub unsafe fn with_candidates(&self, k: usize) -> usize {
+        // SAFETY: the caller's contract.
         unsafe { self.lists.with_candidates.get_unchecked(k).assume_init() as usize }
     }
 
     /// Its first row of pixels, and the number of rows of sub-tiles from the first tile of the bounds to it.
+    ///
+    /// # Safety
+    /// `next` listed the tile row.
     #[inline(always)]
-    pub fn rows(&self, tile_row: usize) -> (f32, i32) {
-        // SAFETY: the tile rows up to `listed` were bounded, and callers ask for no others.
+    pub unsafe fn rows(&self, tile_row: usize) -> (f32, i32) {
+        // SAFETY: those were bounded; the caller's contract.
         unsafe {
             let sub_row = self.lists.sub_row.get_unchecked(tile_row).assume_init();
             (self.lists.top.get_unchecked(tile_row).assume_init(), sub_row as i32)
@@ -148,9 +161,12 @@ impl<'a> TileRows<'a> {
     }
 
     /// The depth bound's change per sub-tile, and its limit.
+    ///
+    /// # Safety
+    /// `next` listed the tile row.
     #[inline(always)]
-    pub fn slope(&self, tile_row: usize) -> (f32, f32) {
-        // SAFETY: the tile rows up to `listed` were bounded, and callers ask for no others.
+    pub unsafe fn slope(&self, tile_row: usize) -> (f32, f32) {
+        // SAFETY: those were bounded; the caller's contract.
         unsafe {
             (
                 self.lists.across.get_unchecked(tile_row).assume_init(),
@@ -160,8 +176,11 @@ impl<'a> TileRows<'a> {
     }
 
     /// Lists the next candidate tiles; `None` if there are no more tile rows.
+    ///
+    /// # Safety
+    /// With the batch and clip given to [`Self::new`], of this buffer.
     #[inline(always)]
-    pub fn next<T: Simd, S: TileOp<T>>(
+    pub unsafe fn next<T: Simd, S: TileOp<T>>(
         &mut self,
         t: T,
         buffer: &Buffer,
@@ -182,7 +201,8 @@ impl<'a> TileRows<'a> {
         }
         let found = self.find_candidates::<T, S>(t, buffer, clip);
         if T::LANES == MAX_LANES {
-            self.locate::<T, S>(t, found.tiles);
+            // SAFETY: they were just listed.
+            unsafe { self.locate::<T, S>(t, found.tiles) };
         }
         Some(found)
     }

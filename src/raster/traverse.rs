@@ -51,42 +51,53 @@ pub(crate) struct Input<'a> {
 
 /// Applies an operation to the tiles of the triangles in `alive.lanes`, in order. Returns the lane at which it stopped
 /// early.
+///
+/// # Safety
+/// [`set_up`](super::setup::set_up) stored the batch and returned `alive`, for this buffer and `op`'s coverage. The clip
+/// consists of tiles of the buffer, and the operation may be applied to them.
 #[inline(always)]
-pub(crate) fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O) -> Option<u32> {
+pub(crate) unsafe fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O) -> Option<u32> {
     let Input { buffer, clip, batch, alive, lists } = input;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Workspace { tile_rows, rows } = unsafe { lists.assume_init_mut() };
-    let mut tile_rows = TileRows::new(t, tile_rows, clip, batch, alive.lanes);
+    // SAFETY: the caller's contract.
+    let mut tile_rows = unsafe { TileRows::new(t, tile_rows, clip, batch, alive.lanes) };
     // By value: the compiler must assume that a store into a tile changes anything behind a reference.
     let (first_planes, first_z_min, pitch) = (buffer.planes(), buffer.z_min(), buffer.tiles_w() as usize);
-    while let Some(found) = tile_rows.next::<T, O>(t, buffer, clip, batch) {
+    // SAFETY (of the look-ups below): only tile rows and tiles that `next` found are asked for.
+    // SAFETY: the same batch and clip as for `new`.
+    while let Some(found) = unsafe { tile_rows.next::<T, O>(t, buffer, clip, batch) } {
         for k in 0..found.tile_rows {
-            let tile_row = tile_rows.with_candidates(k);
-            let (lane, _) = tile_rows.place(tile_row);
-            // SAFETY: there are fewer tile rows than there is room for; set-up stored the lane.
+            // SAFETY: as above; there are fewer tile rows than there is room for; set-up stored the lane.
             unsafe {
+                let tile_row = tile_rows.with_candidates(k);
+                let (lane, _) = tile_rows.place(tile_row);
                 let rows = rows.get_unchecked_mut(tile_row).as_mut_ptr();
                 write_rows::<T, O::Coverage>(t, batch, lane, tile_rows.rows(tile_row), buffer.width(), rows);
             }
         }
         for k in 0..found.tiles {
             if k + AHEAD < found.tiles {
-                let planes = first_planes.wrapping_byte_add(tile_rows.about::<T, O>(k + AHEAD) as usize);
+                // SAFETY: as above.
+                let planes = first_planes.wrapping_byte_add(unsafe { tile_rows.about::<T, O>(k + AHEAD) } as usize);
                 for plane in 0..O::PLANES {
                     t.prefetch(planes.wrapping_add(plane * BLOCK));
                 }
             }
-            let tile = tile_rows.tile::<T, O>(t, k);
+            // SAFETY: as above.
+            let tile = unsafe { tile_rows.tile::<T, O>(t, k) };
             // SAFETY: tile rows with candidates were written above; each array holds a vector.
             let (left, right, z) = unsafe {
                 let rows = rows.get_unchecked(tile.tile_row).as_ptr();
                 let (left, right) = (&raw const (*rows).left, &raw const (*rows).right);
                 (t.load_i(left.cast()), t.load_i(right.cast()), t.load_f((&raw const (*rows).z).cast()))
             };
-            let (across, limit) = tile_rows.slope(tile.tile_row);
+            // SAFETY: as above.
+            let (across, limit) = unsafe { tile_rows.slope(tile.tile_row) };
             let plane = t.add(z, t.mul(t.f(across), tile.sub_columns));
             let depth = O::Coverage::clamp(t, plane, t.f(limit));
-            let row = || tile_rows.place(tile.tile_row).1 * height::<T>();
+            // SAFETY: as above.
+            let row = || unsafe { tile_rows.place(tile.tile_row) }.1 * height::<T>();
             // SAFETY: a tile of the triangle's bounds is a tile of the buffer.
             let more = unsafe {
                 let z_min = first_z_min.add(tile.number as usize);
@@ -99,7 +110,8 @@ pub(crate) fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O
                 }
             };
             if !more {
-                return Some(tile_rows.place(tile.tile_row).0 as u32);
+                // SAFETY: as above.
+                return Some(unsafe { tile_rows.place(tile.tile_row) }.0 as u32);
             }
         }
         op.tiles_done(found.tiles);

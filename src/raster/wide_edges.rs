@@ -11,17 +11,24 @@ use super::bits;
 const UNBOUNDED: f64 = crate::geometry::coverage::UNBOUNDED as f64;
 
 /// Corner `k` of a lane.
-fn corner(batch: &Batch, lane: usize, k: usize) -> (i64, i64) {
-    // SAFETY: set-up stores the corners of wide triangles.
+///
+/// # Safety
+/// Set-up has stored the corners of the batch.
+unsafe fn corner(batch: &Batch, lane: usize, k: usize) -> (i64, i64) {
+    // SAFETY: the caller's contract.
     unsafe { (batch.corners[3 * k].get(lane) as i64, batch.corners[3 * k + 1].get(lane) as i64) }
 }
 
 /// The front-facing lanes, using the exact sign of the area for those in `wide`.
+///
+/// # Safety
+/// Set-up has stored the corners of the batch.
 #[cold]
-pub(crate) fn correct_facing(batch: &Batch, alive: u32, wide: u32) -> u32 {
+pub(crate) unsafe fn correct_facing(batch: &Batch, alive: u32, wide: u32) -> u32 {
     let mut lanes = alive & !wide;
     for lane in bits(wide) {
-        let [(x0, y0), (x1, y1), (x2, y2)] = [0, 1, 2].map(|k| corner(batch, lane, k));
+        // SAFETY: the caller's contract.
+        let [(x0, y0), (x1, y1), (x2, y2)] = [0, 1, 2].map(|k| unsafe { corner(batch, lane, k) });
         if (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0) > 0 {
             lanes |= 1 << lane;
         }
@@ -30,17 +37,24 @@ pub(crate) fn correct_facing(batch: &Batch, alive: u32, wide: u32) -> u32 {
 }
 
 /// Replaces the edges of these lanes.
+///
+/// # Safety
+/// If there are any, set-up has stored the corners of the batch.
 #[inline(always)]
-pub(crate) fn replace_wide(batch: &mut Batch, wide: u32) {
+pub(crate) unsafe fn replace_wide(batch: &mut Batch, wide: u32) {
     if wide != 0 {
-        replace(batch, wide);
+        // SAFETY: the caller's contract.
+        unsafe { replace(batch, wide) };
     }
 }
 
+/// # Safety
+/// Set-up has stored the corners of the batch.
 #[cold]
-fn replace(batch: &mut Batch, wide: u32) {
+unsafe fn replace(batch: &mut Batch, wide: u32) {
     for lane in bits(wide) {
-        let [v0, v1, v2] = [0, 1, 2].map(|k| corner(batch, lane, k));
+        // SAFETY: the caller's contract.
+        let [v0, v1, v2] = [0, 1, 2].map(|k| unsafe { corner(batch, lane, k) });
         let (right, right_slope) = edge(v0, v1).unwrap_or((UNBOUNDED, 0.0));
         let (left, left_slope) = edge(v0, v2).unwrap_or((-UNBOUNDED, 0.0));
         let (upper, lower) = if v1.1 <= v2.1 { (v1, v2) } else { (v2, v1) };

@@ -26,10 +26,10 @@ impl fmt::Display for RecordingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfMemory => f.write_str("out of memory"),
-            Self::Busy => f.write_str("a recording is under way already"),
+            Self::Busy => f.write_str("already recording"),
             Self::File(error) => write!(f, "a recording cannot be made, written or read: {error}"),
             Self::Invalid { offset: 0, why } => write!(f, "not a recording: {why}"),
-            Self::Invalid { offset, why } => write!(f, "a broken recording: {why}, at byte {offset}"),
+            Self::Invalid { offset, why } => write!(f, "corrupt recording: {why}, at byte {offset}"),
         }
     }
 }

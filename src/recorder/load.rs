@@ -118,7 +118,7 @@ impl Recording {
         reader.check(near_clip_plane.is_finite(), "the near plane is not a number")?;
         let resolution = (reader.word()?, reader.word()?);
         let size = 1..=MAX_SIZE;
-        reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "no buffer has this resolution")?;
+        reader.check(size.contains(&resolution.0) && size.contains(&resolution.1), "resolution out of range")?;
         let mut calls = Vec::new();
         loop {
             // A call may be as small as one byte of the file, so running out of memory must be an error instead of
@@ -222,12 +222,12 @@ impl<'a> Reader<'a> {
                 options: DrawOptions::default(),
             });
         }
-        let count = usize::try_from(count).map_err(|_| self.invalid("fewer vertices than none"))?;
-        let bytes = usize::try_from(self.int()?).map_err(|_| self.invalid("a vertex has fewer bytes than none"))?;
+        let count = usize::try_from(count).map_err(|_| self.invalid("negative vertex count"))?;
+        let bytes = usize::try_from(self.int()?).map_err(|_| self.invalid("negative vertex size"))?;
         self.check(bytes >= 4 && bytes.is_multiple_of(4), "a vertex is not made of words")?;
         let vertices = self.words(count, bytes / 4, "more vertices than a file can hold")?;
         let vertices: Vec<f32> = vertices.into_iter().map(f32::from_bits).collect();
-        let num_triangles = usize::try_from(self.int()?).map_err(|_| self.invalid("fewer triangles than none"))?;
+        let num_triangles = usize::try_from(self.int()?).map_err(|_| self.invalid("negative triangle count"))?;
         let triangles = self.words(num_triangles, 3, "more triangles than a file can hold")?;
         let model_to_clip = match self.byte()? {
             0 => None,
@@ -238,7 +238,7 @@ impl<'a> Reader<'a> {
                 }
                 Some(Matrix::from(matrix))
             }
-            _ => return Err(self.invalid("whether there is a matrix is neither yes nor no")),
+            _ => return Err(self.invalid("the matrix flag is neither 0 nor 1")),
         };
         let planes = self.int()?;
         let clip_planes = u32::try_from(planes).ok().and_then(ClipPlanes::from_bits);
@@ -249,7 +249,7 @@ impl<'a> Reader<'a> {
         let whole = vertex_count(size_of_val(vertices.as_slice()), layout)
             .map_err(|_| self.invalid("a vertex layout has a negative stride or offset"))?;
         let named = |&index: &u32| (index as usize) < whole;
-        self.check(triangles.iter().all(named), "an index names a vertex that is not there")?;
+        self.check(triangles.iter().all(named), "an index refers to a vertex that does not exist")?;
         let (space, options) = (VertexSpace::from_parts(layout, model_to_clip), DrawOptions { winding, clip_planes });
         Ok(RecordedMesh { result, vertices, space, triangles, options })
     }

@@ -284,7 +284,7 @@ pub(crate) trait Simd: Copy {
     fn to_d(self, a: Self::F) -> Self::D;
     /// To the nearest f32.
     fn d_to_f(self, a: Self::D) -> Self::F;
-    /// Towards zero; the value must fit.
+    /// Towards zero; unspecified (but harmless) if it does not fit.
     fn d_to_i(self, a: Self::D) -> Self::I;
     fn add_d(self, a: Self::D, b: Self::D) -> Self::D;
     fn sub_d(self, a: Self::D, b: Self::D) -> Self::D;

@@ -68,9 +68,15 @@ impl<const COARSE: bool> TriangleSink for Draw<'_, COARSE> {
         if counts {
             let (batch, clip): (&Batch, _) = (&memory.batch, self.region.tiles());
             // Each bin of a screen gets the same triangles, which must count once; a list has its own.
-            tally.rasterized +=
-                if COARSE { begun_in(batch, alive.rasterized, clip) } else { u64::from(alive.rasterized.count_ones()) };
-            tally.traversed += tiles_in(batch, alive.rasterized, clip);
+            // SAFETY: some triangles are rasterized, so set-up stored the batch.
+            unsafe {
+                tally.rasterized += if COARSE {
+                    begun_in(batch, alive.rasterized, clip)
+                } else {
+                    u64::from(alive.rasterized.count_ones())
+                };
+                tally.traversed += tiles_in(batch, alive.rasterized, clip);
+            }
             let (updated, merged) = self.update::<S, true>(setup.s, &alive, memory);
             (tally.updated, tally.merged) = (tally.updated + updated, tally.merged + merged);
         } else if alive.lanes != 0 {
@@ -92,7 +98,8 @@ impl<T: Simd, R: Rule, const COUNT: bool> Outlined<T> for UpdateTiles<'_, Update
     #[inline(always)]
     fn run(self, t: T) -> Self::Output {
         let Self { input, mut op } = self;
-        traverse(t, input, &mut op);
+        // SAFETY: `Draw` made the input from triangles that it set up and from its region, whose tiles only it updates.
+        unsafe { traverse(t, input, &mut op) };
         op.done()
     }
 }

@@ -45,7 +45,8 @@ impl TriangleSink for AppendToLists<'_, '_> {
         for lane in bits(rasterized) {
             // SAFETY: `orient` stores the corners.
             let triangle = batch.corners.each_ref().map(|x| unsafe { x.get(lane) });
-            let [x0, x1, y0, y1] = batch.tiles(lane);
+            // SAFETY: `orient` stored the batch.
+            let [x0, x1, y0, y1] = unsafe { batch.tiles(lane) };
             // The last column and row of bins extend to the screen's edge.
             let column = |tile: u32| (tile / wide).min(self.bins.0 - 1);
             let row = |tile: u32| (tile / high).min(self.bins.1 - 1);

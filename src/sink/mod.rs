@@ -58,19 +58,27 @@ impl<M> Memory<M> {
 
 /// How many of the triangles in `lanes` have the first tile of their bounds in a rectangle, so that each counts in one
 /// bin only.
-fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+///
+/// # Safety
+/// Set-up has stored the batch.
+unsafe fn begun_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
     let begun = |&lane: &usize| {
-        let [x0, _, y0, _] = batch.tiles(lane);
+        // SAFETY: the caller's contract.
+        let [x0, _, y0, _] = unsafe { batch.tiles(lane) };
         (clip.x0..clip.x1).contains(&x0) && (clip.y0..clip.y1).contains(&y0)
     };
     bits(lanes).filter(begun).count() as u64
 }
 
 /// How many tiles within a rectangle the bounds of the triangles in `lanes` have.
-fn tiles_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
+///
+/// # Safety
+/// Set-up has stored the batch.
+unsafe fn tiles_in(batch: &Batch, lanes: u32, clip: TileRect) -> u64 {
     let mut tiles = 0;
     for lane in bits(lanes) {
-        let [x0, x1, y0, y1] = batch.tiles(lane);
+        // SAFETY: the caller's contract.
+        let [x0, x1, y0, y1] = unsafe { batch.tiles(lane) };
         let wide = (x1 + 1).min(clip.x1).saturating_sub(x0.max(clip.x0));
         let high = (y1 + 1).min(clip.y1).saturating_sub(y0.max(clip.y0));
         tiles += u64::from(wide) * u64::from(high);

@@ -63,7 +63,8 @@ impl TriangleSink for Query<'_> {
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
         if buffer.statistics() {
-            tally.traversed += tiles_in(batch, counted, clip);
+            // SAFETY: some triangles are rasterized, so set-up stored the batch.
+            tally.traversed += unsafe { tiles_in(batch, counted, clip) };
         }
         stopped.is_none()
     }
@@ -92,7 +93,8 @@ impl<T: Simd, R: Rule> Outlined<T> for CompareTiles<'_, Compare<'_, R>> {
     #[inline(always)]
     fn run(self, t: T) -> Self::Output {
         let Self { input, mut op } = self;
-        (traverse(t, input, &mut op), op.touches)
+        // SAFETY: `Query` made the input from triangles that it set up; the clip is the whole buffer, and nothing is written.
+        (unsafe { traverse(t, input, &mut op) }, op.touches)
     }
 }
 
@@ -106,7 +108,8 @@ impl<T: Simd> Outlined<T> for TouchTiles<'_> {
 
     #[inline(always)]
     fn run(self, t: T) -> bool {
-        traverse(t, self.input, &mut Touch).is_some()
+        // SAFETY: as for `CompareTiles`.
+        unsafe { traverse(t, self.input, &mut Touch) }.is_some()
     }
 }
 

@@ -129,7 +129,7 @@ pub(super) unsafe fn project<S: Simd>(
     }
     if ((largest - least) as usize) < CHUNK_VERTICES && dense(least, largest, count) {
         let vertices = (largest - least) as usize + 1;
-        // SAFETY: the caller's contract covers the first and the last; the others lie between them in memory.
+        // SAFETY: the contract of `Mesh::new`: every vertex from the lowest to the highest index can be read.
         unsafe { reader.dense(camera, least, vertices, scratch) };
         let (stride, numbering) = (reader.stride(), Numbering::From(least));
         let next_vertices = reader.at(largest).wrapping_add(stride);
@@ -242,9 +242,9 @@ mod tests {
                 }
             }
             // The whole mesh, and scattered triangles, too few for a vector.
-            let strewn: Vec<u32> = indices.chunks(3).step_by(211).flatten().copied().collect();
+            let scattered: Vec<u32> = indices.chunks(3).step_by(211).flatten().copied().collect();
             let few: Vec<u32> = indices[..9].to_vec();
-            for (triangles, &implementation) in [&indices, &strewn, &few]
+            for (triangles, &implementation) in [&indices, &scattered, &few]
                 .into_iter()
                 .flat_map(|t| Implementation::available().iter().map(move |i| (t, i)))
             {

@@ -29,7 +29,8 @@ fn renumber(indices: &[u32], least: u32, largest: u32, scratch: &mut Scratch) ->
     if page_of(largest) >= PAGES {
         return None;
     }
-    let (table, local) = (PageTable::of(&mut scratch.table), &mut scratch.local);
+    // SAFETY: a reference to a scratch comes from `Scratch::of`.
+    let (table, local) = (unsafe { PageTable::of(&mut scratch.table) }, &mut scratch.local);
     let mut named = Named { pages: [0; SLOTS], count: 1 };
     named.pages[0] = page_of(largest) as u16;
     table[page_of(largest)] = 0;

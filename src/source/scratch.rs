@@ -24,14 +24,17 @@ pub(super) struct PageTable {
 impl PageTable {
     /// Only the flag has to be written before use.
     #[inline(always)]
-    pub fn clear(table: &mut MaybeUninit<Self>) {
+    fn clear(table: &mut MaybeUninit<Self>) {
         // SAFETY: this only writes, it does not read.
         unsafe { (&raw mut (*table.as_mut_ptr()).ready).write(false) };
     }
 
     /// The table, with no page loaded.
-    pub fn of(table: &mut MaybeUninit<Self>) -> &mut [u16; PAGES] {
-        // SAFETY: `clear` wrote the flag, and the slots are written before they are used.
+    ///
+    /// # Safety
+    /// It is that of a [`Scratch`] from [`Scratch::of`].
+    pub unsafe fn of(table: &mut MaybeUninit<Self>) -> &mut [u16; PAGES] {
+        // SAFETY: `Scratch::of` wrote the flag, and the slots are written before they are used.
         unsafe {
             let table = table.as_mut_ptr();
             let slots = &raw mut (*table).slots;

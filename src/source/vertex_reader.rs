@@ -204,11 +204,11 @@ impl<S: Simd> VertexReader<S> {
     }
 
     /// # Safety
-    /// The first `LANES` indices refer to vertices that can be read; `local` is within the chunk.
+    /// All sixteen indices refer to vertices that can be read; `local` is within the chunk.
     #[inline(always)]
     unsafe fn each(&self, camera: &Camera, indices: [u32; MAX_LANES], local: usize, scratch: &mut Scratch) {
         let s = self.s;
-        // SAFETY: all sixteen indices are read, and all refer to vertices; arrays of sixteen hold a vector.
+        // SAFETY: the caller's contract; arrays of sixteen hold a vector.
         unsafe {
             let v = self.load_each(indices);
             let v = [s.load_f(v[0].as_ptr()), s.load_f(v[1].as_ptr()), s.load_f(v[2].as_ptr())];

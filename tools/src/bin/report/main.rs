@@ -100,9 +100,7 @@ fn run(args: &Args) -> Result<()> {
     say(&format!("\nwritten to {}", args.out.display()));
     match (found.falsely(), found.other_bits()) {
         (0, 0) => Ok(()),
-        (falsely, bits) => {
-            Err(format!("{falsely} falsely culled, {bits} buffers whose bits differ from what they should be").into())
-        }
+        (falsely, bits) => Err(format!("{falsely} falsely culled, {bits} buffers with differing bits").into()),
     }
 }
 
@@ -228,7 +226,7 @@ impl Findings {
     fn summary(&self) -> String {
         let mut text: Vec<String> = self.caution().into_iter().collect();
         text.extend([
-            "Percent of the hidden objects / boxes culled, and time over that of quick:".into(),
+            "Percentage of hidden objects / boxes culled, and time relative to the quick rule:".into(),
             tables::rules(&self.surveys).text(),
         ]);
         for table in tables::effects(&self.surveys) {

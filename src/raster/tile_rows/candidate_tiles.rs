@@ -5,9 +5,9 @@
 
 use core::mem::MaybeUninit;
 
-use super::tile_op::TileOp;
-use super::tile_rows::{LOW, MAX_TILES, PLACE_SHIFT, TILE_ROWS, TileRows, Words, unpack};
+use super::{LOW, MAX_TILES, PLACE_SHIFT, TILE_ROWS, TileRows, Words, unpack};
 use crate::buffer::{BLOCK, SUB_TILES, TILE_WIDTH};
+use crate::raster::tile_op::TileOp;
 use crate::simd::{MAX_LANES, Simd};
 
 /// Padded by one vector.
@@ -28,7 +28,7 @@ pub(super) struct CandidateTiles {
 }
 
 /// A candidate tile.
-pub(super) struct Tile<T: Simd> {
+pub(crate) struct Tile<T: Simd> {
     pub tile_row: usize,
     /// Byte offset of its planes.
     pub planes: u32,
@@ -43,9 +43,12 @@ pub(super) struct Tile<T: Simd> {
 
 impl TileRows<'_> {
     /// Address of the planes of the `k`th candidate tile, as a byte offset.
+    ///
+    /// # Safety
+    /// `next` counted the tile.
     #[inline(always)]
-    pub fn about<T: Simd, S: TileOp<T>>(&self, k: usize) -> u32 {
-        // SAFETY: callers only ask for tiles that `next` counted; with sixteen lanes those were located.
+    pub unsafe fn about<T: Simd, S: TileOp<T>>(&self, k: usize) -> u32 {
+        // SAFETY: the caller's contract; with sixteen lanes, the counted tiles were located.
         unsafe {
             if T::LANES == MAX_LANES {
                 return self.lists.tiles.located.get_unchecked(k).assume_init();
@@ -56,18 +59,24 @@ impl TileRows<'_> {
     }
 
     /// The column of the `k`th candidate tile.
+    ///
+    /// # Safety
+    /// `next` counted the tile.
     #[inline(always)]
-    pub fn column(&self, k: usize) -> u32 {
-        // SAFETY: callers only ask for tiles that `next` counted.
+    pub unsafe fn column(&self, k: usize) -> u32 {
+        // SAFETY: the caller's contract.
         unsafe { self.lists.tiles.named.get_unchecked(k).assume_init() & LOW }
     }
 
     /// The `k`th candidate tile.
+    ///
+    /// # Safety
+    /// `next` counted the tile.
     #[inline(always)]
-    pub fn tile<T: Simd, S: TileOp<T>>(&self, t: T, k: usize) -> Tile<T> {
+    pub unsafe fn tile<T: Simd, S: TileOp<T>>(&self, t: T, k: usize) -> Tile<T> {
         let lists = &*self.lists;
-        // SAFETY: callers only ask for tiles that `next` counted, whose tile rows were bounded; with sixteen lanes the
-        // tiles were located.
+        // SAFETY: the caller's contract; the tile rows of counted tiles were bounded, and with sixteen lanes the tiles were
+        // located.
         unsafe {
             let (tile_row, x) = unpack(lists.tiles.named.get_unchecked(k).assume_init());
             let sub_columns = t.and(t.iota(), t.i(3));
@@ -98,12 +107,15 @@ impl TileRows<'_> {
     }
 
     /// Locates the candidate tiles, a vector at a time.
+    ///
+    /// # Safety
+    /// The first `tiles` were listed.
     #[inline(always)]
-    pub(super) fn locate<T: Simd, S: TileOp<T>>(&mut self, t: T, tiles: usize) {
+    pub(super) unsafe fn locate<T: Simd, S: TileOp<T>>(&mut self, t: T, tiles: usize) {
         let lists = &mut *self.lists;
         let mut k = 0;
         while k < tiles {
-            // SAFETY: the tiles up to `tiles` were listed, and a padding vector was written after them; all 32 words of
+            // SAFETY: the caller's contract; a padding vector was written after them; all 32 words of
             // the tile row lists were written. The tile lists have room for a vector after the last tile.
             unsafe {
                 let word = t.load_i(lists.tiles.named.as_ptr().add(k).cast());
