@@ -27,8 +27,10 @@
  * WakeThreads, and before the first WakeThreads.
  *
  * The object that the pool draws into may be queried directly by any thread, except while SetBuffer or SetResolution runs. It
- * may be drawn into directly while no thread calls the pool: its methods first wait for work in flight. Pool and object may be
- * destroyed in either order; whichever goes first, what was submitted is drawn before, so the arrays must still exist.
+ * may be drawn into directly while no thread calls the pool: its methods first wait for work in flight, except
+ * GetNumDroppedTriangles and GetStatistics, which count what has been drawn so far, and SetNearClipPlane, which applies to
+ * later draws. Pool and object may be destroyed in either order; whichever goes first, what was submitted is drawn before, so
+ * the arrays must still exist.
  *
  * Several threads may call everything but the destructor concurrently. SetMatrix and SetVertexLayout apply to later calls on
  * the same thread; a thread that has never called either uses what any thread set last. The overloads with a matrix need

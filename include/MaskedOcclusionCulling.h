@@ -61,6 +61,8 @@ extern "C++" {
  *                   that a matrix is not combined with VertexLayout(16, 4, 12), the default, whose last offset is then that of
  *                   z: packed x, y, z, w with a matrix is (16, 4, 8). 0 (default with NDEBUG): no assertion. For programs whose
  *                   z really is at 12; the callback of SetMessageCallback may still report it, with MOC_STATUS_OK.
+ *                   Unlike the others it should be the same in all translation units, as NDEBUG should: the linker keeps one
+ *                   copy of an inline method.
  *
  * QUICK_MASK and USE_AVX512 stay undefined if the program does not define them, whereas Intel's header defines them (1
  * and 0): leaving QUICK_MASK undefined is what selects three layers. A later `#if QUICK_MASK` in the program is then

@@ -98,8 +98,10 @@
  *                    flags set (fetestexcept) if the thread has the default settings. On processors other than x86 with SSE and
  *                    aarch64 the settings are not changed: there, results are specified only for threads that round to nearest.
  *   stack            A draw or a test of triangles needs up to 59 KB of stack (64 KB in a build without optimisation),
- *                    MOC_BinTriangles 42 KB, MOC_RenderTrilist 33 KB, MOC_TestRect and the others less than 5 KB. 64 KB is too
- *                    small for draws and triangle tests once a fiber's own frames are counted: give fibers 96 KB or more.
+ *                    MOC_BinTriangles 42 KB, MOC_RenderTrilist 33 KB, MOC_TestRect and most others less than 5 KB. Calls
+ *                    that may draw what a pool still has in flight (MOC_ThreadpoolWorkOnce, MOC_ThreadpoolFlush, MOC_Flush,
+ *                    MOC_Destroy and the like) need 42 KB. 64 KB is too small for draws and triangle tests once a fiber's own
+ *                    frames are counted: give fibers 96 KB or more.
  *   transforming     MOC_TransformVertices does not work in place: it writes 16 bytes per vertex, and with a smaller input
  *                    stride it would overwrite vertices that it has not read yet.
  *   dlclose          May leave the library mapped: on Linux a thread that used a pool keeps it mapped until the thread ends,
@@ -1821,12 +1823,15 @@ MOC_Status MOC_RecordingLoad(const char *path,
 /**
  * Like MOC_RecordingLoad, for a file already in memory. `bytes` may be freed once the call returns.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
+ * Errors: MOC_STATUS_NULL_POINTER if `out` is null, or `bytes` is and `size` is not 0, MOC_STATUS_INVALID_RECORDING,
+ * MOC_STATUS_OUT_OF_MEMORY.
  *
  * Required:
  * `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
  */
-MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes, size_t size, struct MOC_Recording **out);
+MOC_Status MOC_RecordingFromMemory(const uint8_t *bytes,
+                                   size_t size,
+                                   struct MOC_Recording **out);
 
 /**
  * Frees a recording. Null is allowed.

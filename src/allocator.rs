@@ -126,3 +126,16 @@ impl Drop for AlignedWords {
         }
     }
 }
+
+/// `Box::new`, which aborts the program without memory, but `None` instead.
+#[cfg(feature = "recorder")]
+pub(crate) fn try_box<T>(value: T) -> Option<Box<T>> {
+    let layout = Layout::new::<T>();
+    assert!(layout.size() != 0);
+    // SAFETY: the size is not zero. The memory is written before the box owns it, and the box frees it with this layout.
+    unsafe {
+        let place = NonNull::new(std::alloc::alloc(layout).cast::<T>())?;
+        place.write(value);
+        Some(Box::from_raw(place.as_ptr()))
+    }
+}

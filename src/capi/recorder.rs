@@ -8,6 +8,7 @@ use super::pointers::{check_out, object, read_size, slice, with_buffer, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
+use crate::allocator::try_box;
 use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
 /// In recordings: the answer is not known.
@@ -187,7 +188,8 @@ pub unsafe extern "C" fn MOC_RecordingLoad(path: *const c_char, out: *mut *mut M
 
 /// Like MOC_RecordingLoad, for a file already in memory. `bytes` may be freed once the call returns.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_RECORDING.
+/// Errors: MOC_STATUS_NULL_POINTER if `out` is null, or `bytes` is and `size` is not 0, MOC_STATUS_INVALID_RECORDING,
+/// MOC_STATUS_OUT_OF_MEMORY.
 ///
 /// # Safety
 /// `bytes` is null or can be read for `size` bytes, `out` is null or can be written.
@@ -309,12 +311,22 @@ unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recor
     unsafe { write(out, core::ptr::null_mut()) };
     let recording = load()?;
     let layout = |call| recorded_mesh(call).map(|mesh| mesh.space.layout().into());
-    let layouts: Vec<Option<MOC_VertexLayout>> = recording.calls.iter().map(layout).collect();
+    let layouts: Vec<Option<MOC_VertexLayout>> = collected(recording.calls.iter().map(layout))?;
     let meshes = recording.calls.iter().zip(&layouts);
-    let meshes = meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?))).collect();
+    let meshes = collected(meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?))))?;
+    let loaded = MOC_Recording { recording, _layouts: layouts, meshes };
+    let loaded = try_box(loaded).ok_or(MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?;
     // SAFETY: as above.
-    unsafe { write(out, Box::into_raw(Box::new(MOC_Recording { recording, _layouts: layouts, meshes }))) };
+    unsafe { write(out, Box::into_raw(loaded)) };
     Ok(())
+}
+
+/// `collect`, but with an error if there is not enough memory.
+fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Refusal> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(items.len()).map_err(|_| MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?;
+    all.extend(items);
+    Ok(all)
 }
 
 /// The mesh of a recorded call that has one.

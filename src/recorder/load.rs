@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::error::RecordingError;
 use super::format::{CLEAR_BUFFER, END, RENDER_TRIANGLES, SIGNATURE, TEST_RECT, TEST_TRIANGLES, UNKNOWN};
+use crate::allocator::try_box;
 use crate::buffer::MAX_SIZE;
 use crate::vertices::vertex_count;
 use crate::{
@@ -128,13 +129,18 @@ impl Recording {
             calls.push(match reader.byte()? {
                 CLEAR_BUFFER => RecordedCall::ClearBuffer,
                 TEST_RECT => RecordedCall::TestRect(reader.rect()?),
-                RENDER_TRIANGLES => RecordedCall::RenderTriangles(Box::new(reader.mesh()?)),
-                TEST_TRIANGLES => RecordedCall::TestTriangles(Box::new(reader.mesh()?)),
+                RENDER_TRIANGLES => RecordedCall::RenderTriangles(boxed(reader.mesh()?)?),
+                TEST_TRIANGLES => RecordedCall::TestTriangles(boxed(reader.mesh()?)?),
                 END => return Ok(Self { near_clip_plane, resolution, calls }),
                 _ => return Err(reader.invalid("no call is of this kind")),
             });
         }
     }
+}
+
+/// A file may hold very many meshes.
+fn boxed(mesh: RecordedMesh) -> Result<Box<RecordedMesh>, RecordingError> {
+    try_box(mesh).ok_or(RecordingError::OutOfMemory)
 }
 
 struct Reader<'a> {

@@ -1,4 +1,7 @@
 //! Doubles the number of lanes: two vectors of a narrower instruction set side by side.
+//!
+//! SAFETY of every block without its own comment: the caller of an `unsafe fn` guarantees it for the whole vector, and so
+//! for each half.
 
 use super::{Outlined, Simd, strided};
 
@@ -58,7 +61,6 @@ impl<S: Simd> Simd for Pair<S> {
 
     #[inline(always)]
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [Self::F; 3] {
-        // SAFETY: the caller's contract, half by half.
         unsafe {
             let (low, high) = (self.0.load_records(p, index), self.0.load_records(p, index.add(3 * S::LANES)));
             [[low[0], high[0]], [low[1], high[1]], [low[2], high[2]]]
@@ -66,7 +68,6 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn store_records(self, p: *mut f32, [x, y, z]: [Self::F; 3]) {
-        // SAFETY: the caller's contract, half by half.
         unsafe {
             self.0.store_records(p, [x[0], y[0], z[0]]);
             self.0.store_records(p.add(4 * S::LANES), [x[1], y[1], z[1]]);
@@ -74,22 +75,18 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> Self::F {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_f(p), self.0.load_f(p.add(S::LANES))] }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> Self::I {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_i(p), self.0.load_i(p.add(S::LANES))] }
     }
     #[inline(always)]
     unsafe fn load_some(self, p: *const u32, n: usize) -> Self::I {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_some(p, n), self.0.load_some(p.wrapping_add(S::LANES), n.saturating_sub(S::LANES))] }
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: Self::F) {
-        // SAFETY: the caller's contract, half by half.
         unsafe {
             self.0.store_f(p, x[0]);
             self.0.store_f(p.add(S::LANES), x[1]);
@@ -97,7 +94,6 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: Self::I) {
-        // SAFETY: the caller's contract, half by half.
         unsafe {
             self.0.store_i(p, x[0]);
             self.0.store_i(p.add(S::LANES), x[1]);
@@ -105,7 +101,6 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: Self::D) {
-        // SAFETY: the caller's contract, half by half.
         unsafe {
             self.0.store_d(p, x[0]);
             self.0.store_d(p.add(S::LANES), x[1]);
@@ -113,29 +108,24 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> Self::F {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_strided(p, stride), self.0.load_strided(strided(p, S::LANES, stride).cast(), stride)] }
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: Self::I) -> Self::F {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.gather(p, index[0]), self.0.gather(p, index[1])] }
     }
     #[inline(always)]
     unsafe fn gather_pairs(self, p: *const f32, index: Self::I) -> [Self::F; 2] {
-        // SAFETY: the caller's contract, half by half.
         let (a, b) = unsafe { (self.0.gather_pairs(p, index[0]), self.0.gather_pairs(p, index[1])) };
         [[a[0], b[0]], [a[1], b[1]]]
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [Self::I; 3] {
-        // SAFETY: the caller's contract, half by half.
         let (a, b) = unsafe { (self.0.load_triangles(p), self.0.load_triangles(p.add(3 * S::LANES))) };
         [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]]]
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [Self::F; 4] {
-        // SAFETY: the caller's contract, half by half.
         let (a, b) = unsafe { (self.0.load_quads(p), self.0.load_quads(p.add(4 * S::LANES))) };
         [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]], [a[3], b[3]]]
     }
@@ -150,7 +140,6 @@ impl<S: Simd> Simd for Pair<S> {
 
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> Self::I {
-        // SAFETY: the caller's contract, half by half.
         unsafe { [self.0.load_bytes(p), self.0.load_bytes(p.add(S::LANES))] }
     }
 
@@ -214,7 +203,6 @@ impl<S: Simd> Simd for Pair<S> {
     }
     #[inline(always)]
     unsafe fn store_z_min(self, p: *mut f32, pitch: usize, a: Self::F) {
-        // SAFETY: the caller's contract.
         unsafe {
             if S::LANES < 8 {
                 return self.0.store_z_min(p, pitch, self.0.min(a[0], a[1]));

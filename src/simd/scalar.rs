@@ -1,4 +1,6 @@
 //! Four lanes in plain Rust: runs anywhere, and is the reference implementation for the others.
+//!
+//! SAFETY of every block without its own comment: the caller of an `unsafe fn` guarantees that its pointers are valid.
 
 use super::pair::Pair;
 use super::{Job, Outlined, Simd, record, store_relaxed, strided};
@@ -104,7 +106,6 @@ impl Simd for Scalar4 {
         let mut v = [[0.0; 4]; 3];
         for lane in 0..4 {
             for k in 0..3 {
-                // SAFETY: the caller's contract.
                 v[k][lane] = unsafe { record(p, index, lane).add(k).read_unaligned() };
             }
         }
@@ -114,72 +115,60 @@ impl Simd for Scalar4 {
     unsafe fn store_records(self, p: *mut f32, v: [[f32; 4]; 3]) {
         for lane in 0..4 {
             for k in 0..3 {
-                // SAFETY: the caller's contract.
                 unsafe { p.add(4 * lane + k).write_unaligned(v[k][lane]) };
             }
         }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> [f32; 4] {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[f32; 4]>().read_unaligned() }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> [i32; 4] {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[i32; 4]>().read_unaligned() }
     }
     #[inline(always)]
     unsafe fn load_some(self, p: *const u32, n: usize) -> [i32; 4] {
         let mut lanes = [0; 4];
         for (lane, x) in lanes.iter_mut().enumerate().take(n) {
-            // SAFETY: the caller's contract.
             *x = unsafe { p.add(lane).read_unaligned() as i32 };
         }
         lanes
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: [f32; 4]) {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[f32; 4]>().write_unaligned(x) }
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: [i32; 4]) {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[i32; 4]>().write_unaligned(x) }
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: [f64; 4]) {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[f64; 4]>().write_unaligned(x) }
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> [f32; 4] {
         let at = [0, 1, 2, 3];
-        // SAFETY: the caller's contract.
         lanes!(at => unsafe { strided(p, at, stride).read_unaligned() })
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: [i32; 4]) -> [f32; 4] {
-        // SAFETY: the caller's contract.
         lanes!(index => unsafe { *p.add(index as usize) })
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [[i32; 4]; 3] {
-        // SAFETY: the caller's contract.
         let t = unsafe { p.cast::<[i32; 12]>().read_unaligned() };
         [[t[0], t[3], t[6], t[9]], [t[1], t[4], t[7], t[10]], [t[2], t[5], t[8], t[11]]]
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [[f32; 4]; 4] {
-        // SAFETY: the caller's contract.
         let v = unsafe { p.cast::<[[f32; 4]; 4]>().read_unaligned() };
         let k = [0, 1, 2, 3];
         lanes!(k => [v[0][k], v[1][k], v[2][k], v[3][k]])
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> [i32; 4] {
-        // SAFETY: the caller's contract.
         unsafe { p.cast::<[u8; 4]>().read().map(i32::from) }
     }
     #[inline(always)]
@@ -261,7 +250,6 @@ impl Simd for Scalar4 {
     #[inline(always)]
     unsafe fn store_z_min(self, p: *mut f32, _: usize, a: [f32; 4]) {
         let least = |a: f32, b: f32| if a < b { a } else { b };
-        // SAFETY: the caller's contract.
         unsafe { store_relaxed(p, least(least(a[0], a[1]), least(a[2], a[3]))) }
     }
 

@@ -3,6 +3,9 @@
 //! A module that contains these instructions does not load on an engine without them, so there is nothing to detect:
 //! they are used if the whole crate is compiled with `-C target-feature=+simd128`. Relaxed SIMD is not used, because
 //! its results may differ between machines. Operations on values are safe functions here.
+//!
+//! SAFETY of every block without its own comment: the caller of an `unsafe fn` guarantees that its pointers are valid.
+//! Loads and stores need no alignment.
 
 use core::arch::wasm32::*;
 
@@ -71,7 +74,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [v128; 3] {
-        // SAFETY: the caller's contract; loads need no alignment.
         let load = |lane: usize| unsafe { v128_load(record(p, index, lane).cast()) };
         let (a, b, c, d) = (load(0), load(1), load(2), load(3));
         let (ab, cd) = (zip_low(a, b), zip_low(c, d));
@@ -84,18 +86,15 @@ impl Simd for Simd128 {
         let records =
             [low_halves(xy, zz), high_halves(xy, zz), low_halves(xy_high, zz_high), high_halves(xy_high, zz_high)];
         for lane in 0..4 {
-            // SAFETY: the caller's contract; stores need no alignment.
             unsafe { v128_store(p.add(4 * lane).cast(), records[lane]) };
         }
     }
     #[inline(always)]
     unsafe fn load_f(self, p: *const f32) -> v128 {
-        // SAFETY: the caller's contract; loads need no alignment.
         unsafe { v128_load(p.cast()) }
     }
     #[inline(always)]
     unsafe fn load_i(self, p: *const u32) -> v128 {
-        // SAFETY: the caller's contract; loads need no alignment.
         unsafe { v128_load(p.cast()) }
     }
     #[inline(always)]
@@ -113,17 +112,14 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn store_f(self, p: *mut f32, x: v128) {
-        // SAFETY: the caller's contract; stores need no alignment.
         unsafe { v128_store(p.cast(), x) }
     }
     #[inline(always)]
     unsafe fn store_i(self, p: *mut u32, x: v128) {
-        // SAFETY: the caller's contract; stores need no alignment.
         unsafe { v128_store(p.cast(), x) }
     }
     #[inline(always)]
     unsafe fn store_d(self, p: *mut f64, x: [v128; 2]) {
-        // SAFETY: the caller's contract; stores need no alignment.
         unsafe {
             v128_store(p.cast(), x[0]);
             v128_store(p.add(2).cast(), x[1]);
@@ -131,7 +127,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn load_strided(self, p: *const u8, stride: usize) -> v128 {
-        // SAFETY: the caller's contract: four floats; loads need no alignment.
         unsafe {
             let at = |k: usize| strided(p, k, stride).cast::<u32>();
             let v = v128_load32_zero(at(0));
@@ -142,7 +137,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn gather(self, p: *const f32, index: v128) -> v128 {
-        // SAFETY: the caller's contract, index by index.
         unsafe {
             let at = |k: u32| p.add(k as usize).cast::<u32>();
             let v = v128_load32_zero(at(u32x4_extract_lane::<0>(index)));
@@ -165,7 +159,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn load_triangles(self, p: *const u32) -> [v128; 3] {
-        // SAFETY: the caller's contract: twelve words; loads need no alignment.
         let load = |k: usize| unsafe { v128_load(p.add(4 * k).cast()) };
         // a0 b0 c0 a1 | b1 c1 a2 b2 | c2 a3 b3 c3
         let (x, y, z) = (load(0), load(1), load(2));
@@ -177,7 +170,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn load_quads(self, p: *const f32) -> [v128; 4] {
-        // SAFETY: the caller's contract: sixteen floats; loads need no alignment.
         let load = |k: usize| unsafe { v128_load(p.add(4 * k).cast()) };
         let (a, b, c, d) = (load(0), load(1), load(2), load(3));
         let (ab, cd) = (zip_low(a, b), zip_low(c, d));
@@ -186,7 +178,6 @@ impl Simd for Simd128 {
     }
     #[inline(always)]
     unsafe fn load_bytes(self, p: *const u8) -> v128 {
-        // SAFETY: the caller's contract: four bytes; loads need no alignment.
         let bytes = unsafe { v128_load32_zero(p.cast()) };
         u32x4_extend_low_u16x8(u16x8_extend_low_u8x16(bytes))
     }
@@ -271,7 +262,6 @@ impl Simd for Simd128 {
     unsafe fn store_z_min(self, p: *mut f32, _: usize, a: v128) {
         let halves = f32x4_pmin(a, i64x2_shuffle::<1, 1>(a, a));
         let least = f32x4_pmin(halves, i32x4_shuffle::<1, 1, 1, 1>(halves, halves));
-        // SAFETY: the caller's contract.
         unsafe { store_relaxed(p, f32x4_extract_lane::<0>(least)) }
     }
     #[inline(always)]
