@@ -29,6 +29,15 @@ static int check_failures = 0;
         }                                                                                 \
     } while (0)
 
+/* The instruction set that MOC_SCALAR stands for: on these processors scalar code is not compiled. */
+#if defined(__x86_64__) || defined(__i386__) || defined(_M_X64) || defined(_M_IX86)
+#define SIMPLEST_IMPLEMENTATION MOC_SSE2
+#elif defined(__aarch64__) || defined(_M_ARM64)
+#define SIMPLEST_IMPLEMENTATION MOC_NEON
+#else
+#define SIMPLEST_IMPLEMENTATION MOC_SCALAR
+#endif
+
 /* The program's exit code. */
 static inline int check_report(const char *program)
 {

@@ -127,7 +127,16 @@ impl Drop for AlignedWords {
     }
 }
 
-/// `Box::new`, which aborts the program without memory, but `None` instead.
+/// `collect` into a vector, but `None` instead of aborting the program if there is not enough memory.
+#[cfg(feature = "recorder")]
+pub(crate) fn try_collect<T>(items: impl ExactSizeIterator<Item = T>) -> Option<Vec<T>> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(items.len()).ok()?;
+    all.extend(items);
+    Some(all)
+}
+
+/// `Box::new`, but `None` instead of aborting the program if there is not enough memory.
 #[cfg(feature = "recorder")]
 pub(crate) fn try_box<T>(value: T) -> Option<Box<T>> {
     let layout = Layout::new::<T>();

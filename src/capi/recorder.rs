@@ -8,7 +8,7 @@ use super::pointers::{check_out, object, read_size, slice, with_buffer, write};
 use super::refusal::{Because, Refusal};
 use super::status::{MOC_Status, guard};
 use super::types::{self, MOC_VertexLayout};
-use crate::allocator::try_box;
+use crate::allocator::{try_box, try_collect};
 use crate::{MaskedOcclusionCulling, RecordedCall, RecordedMesh, Recording};
 
 /// In recordings: the answer is not known.
@@ -306,27 +306,21 @@ unsafe fn path<'a>(path: *const c_char) -> Result<&'a Path, Refusal> {
 /// # Safety
 /// `out` is null or can be written.
 unsafe fn load(out: *mut *mut MOC_Recording, load: impl FnOnce() -> Result<Recording, Refusal>) -> Result<(), Refusal> {
+    const NO_MEMORY: MOC_Status = MOC_Status::MOC_STATUS_OUT_OF_MEMORY;
     check_out(out)?;
     // SAFETY: not null, and the caller's contract.
     unsafe { write(out, core::ptr::null_mut()) };
     let recording = load()?;
     let layout = |call| recorded_mesh(call).map(|mesh| mesh.space.layout().into());
-    let layouts: Vec<Option<MOC_VertexLayout>> = collected(recording.calls.iter().map(layout))?;
+    let layouts: Vec<Option<MOC_VertexLayout>> = try_collect(recording.calls.iter().map(layout)).ok_or(NO_MEMORY)?;
     let meshes = recording.calls.iter().zip(&layouts);
-    let meshes = collected(meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?))))?;
+    let meshes = meshes.map(|(call, layout)| Some(described(recorded_mesh(call)?, layout.as_ref()?)));
+    let meshes = try_collect(meshes).ok_or(NO_MEMORY)?;
     let loaded = MOC_Recording { recording, _layouts: layouts, meshes };
-    let loaded = try_box(loaded).ok_or(MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?;
+    let loaded = try_box(loaded).ok_or(NO_MEMORY)?;
     // SAFETY: as above.
     unsafe { write(out, Box::into_raw(loaded)) };
     Ok(())
-}
-
-/// `collect`, but with an error if there is not enough memory.
-fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Refusal> {
-    let mut all = Vec::new();
-    all.try_reserve_exact(items.len()).map_err(|_| MOC_Status::MOC_STATUS_OUT_OF_MEMORY)?;
-    all.extend(items);
-    Ok(all)
 }
 
 /// The mesh of a recorded call that has one.

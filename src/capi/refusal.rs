@@ -1,6 +1,6 @@
 //! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong with it.
 
-use super::status::MOC_Status;
+use super::status::{self, MOC_Status};
 use crate::Error;
 #[cfg(feature = "recorder")]
 use crate::RecordingError;
@@ -23,27 +23,12 @@ impl Refusal {
     pub fn why(self) -> &'static str {
         match (self.why, self.status) {
             (Some(why), _) => why,
-            (None, MOC_Status::MOC_STATUS_OK) => "done",
-            (None, MOC_Status::MOC_STATUS_NULL_POINTER) => "a required pointer is null",
-            (None, MOC_Status::MOC_STATUS_INVALID_ENUM) => "an enumeration argument has an unknown value",
-            (None, MOC_Status::MOC_STATUS_INVALID_SIZE) => "a size, count or rectangle is out of range",
-            (None, MOC_Status::MOC_STATUS_INVALID_NUMBER) => "a number is not finite",
-            (None, MOC_Status::MOC_STATUS_INVALID_LAYOUT) => {
-                "a vertex layout is not accepted, or a pointer is misaligned"
-            }
-            (None, MOC_Status::MOC_STATUS_NO_BUFFER) => "no buffer: call MOC_SetResolution first",
-            (None, MOC_Status::MOC_STATUS_INDEX_OUT_OF_RANGE) => "an index refers to a vertex that does not exist",
-            (None, MOC_Status::MOC_STATUS_SIZE_MISMATCH) => "the two buffers differ in resolution or row direction",
             (None, MOC_Status::MOC_STATUS_LIST_FULL) => {
                 "a triangle list is full: triangles that did not fit are not drawn"
             }
             (None, MOC_Status::MOC_STATUS_OUT_OF_MEMORY) => "the allocator returned no memory, or misaligned memory",
-            (None, MOC_Status::MOC_STATUS_INTERNAL) => "internal error in the library",
-            (None, MOC_Status::MOC_STATUS_FILE) => "the recording's file cannot be created, written or read",
-            (None, MOC_Status::MOC_STATUS_INVALID_RECORDING) => {
-                "the file is not a recording, or it is truncated or corrupt"
-            }
             (None, MOC_Status::MOC_STATUS_BUSY) => "a pool is drawing into the object: call MOC_Flush first",
+            (None, status) => status::text(status),
         }
     }
 }

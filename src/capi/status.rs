@@ -85,6 +85,11 @@ const TEXTS: [&CStr; 15] = [
     c"a pool is drawing into the object, or it belongs to another pool, or it is already recording",
 ];
 
+/// The text of a status.
+pub(super) fn text(status: MOC_Status) -> &'static str {
+    TEXTS[status as usize].to_str().unwrap_or_default()
+}
+
 /// The MOC_ABI_VERSION that the library was built with.
 #[unsafe(export_name = symbol!(MOC_GetAbiVersion))]
 pub extern "C" fn MOC_GetAbiVersion() -> u32 {

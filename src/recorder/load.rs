@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::RecordingError;
 use super::format::{CLEAR_BUFFER, END, RENDER_TRIANGLES, SIGNATURE, TEST_RECT, TEST_TRIANGLES, UNKNOWN};
-use crate::allocator::try_box;
+use crate::allocator::{try_box, try_collect};
 use crate::buffer::MAX_SIZE;
 use crate::vertices::vertex_count;
 use crate::{
@@ -196,10 +196,7 @@ impl<'a> Reader<'a> {
     fn words(&mut self, count: usize, each: usize, why: &'static str) -> Result<Vec<u32>, RecordingError> {
         let len = count.checked_mul(each).and_then(|n| n.checked_mul(4)).ok_or_else(|| self.invalid(why))?;
         let (from, _) = self.take(len)?.as_chunks::<4>();
-        let mut words = Vec::new();
-        words.try_reserve_exact(from.len()).map_err(|_| RecordingError::OutOfMemory)?;
-        words.extend(from.iter().map(|&word| u32::from_le_bytes(word)));
-        Ok(words)
+        try_collect(from.iter().map(|&word| u32::from_le_bytes(word))).ok_or(RecordingError::OutOfMemory)
     }
 
     fn result(&mut self) -> Result<Option<CullingResult>, RecordingError> {

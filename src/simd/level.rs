@@ -4,8 +4,8 @@ use super::Job;
 use super::scalar;
 use crate::Implementation;
 
-/// Whether the kernel is compiled for scalar code, which is large and slow to compile: where nothing else would be, or if the
-/// feature asks for it.
+/// Whether the kernel is compiled for scalar code, which is large and slow to compile: where nothing else would be, or
+/// if the feature asks for it.
 const SCALAR: bool = cfg!(any(
     feature = "scalar",
     not(any(
@@ -168,10 +168,11 @@ fn available() -> &'static [Implementation] {
 
 /// Whether this processor has an instruction set that the kernel is compiled for.
 fn is_detected(implementation: Implementation) -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return match implementation {
+    match implementation {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Implementation::Sse41 => is_x86_feature_detected!("sse4.1") && is_x86_feature_detected!("ssse3"),
         // Every processor with AVX2 has these, but a virtual machine may hide them.
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Implementation::Avx2 => {
             is_detected(Implementation::Sse41)
                 && is_x86_feature_detected!("avx2")
@@ -181,6 +182,7 @@ fn is_detected(implementation: Implementation) -> bool {
                 && is_x86_feature_detected!("lzcnt")
                 && is_x86_feature_detected!("popcnt")
         }
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Implementation::Avx512 => {
             is_detected(Implementation::Avx2)
                 && is_x86_feature_detected!("avx512f")
@@ -188,9 +190,7 @@ fn is_detected(implementation: Implementation) -> bool {
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl")
         }
+        // The others are part of the target.
         _ => true,
-    };
-    // Elsewhere it is part of the target.
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    return COMPILED.contains(&implementation);
+    }
 }

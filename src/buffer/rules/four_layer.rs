@@ -11,7 +11,7 @@
 //! small pieces has to give up depth before it is full. It costs 8 bytes per sub-tile, and two more planes to load and
 //! store in each tile drawn into. A fifth layer adds little. Figures are in `docs/rules.md`.
 
-use super::{Inserted, Planes, Rule, behind_layer};
+use super::{Inserted, Planes, Rule, behind_layer, behind_reference};
 use crate::buffer::BLOCK;
 use crate::simd::Simd;
 
@@ -126,8 +126,7 @@ impl Rule for FourLayer {
 
     #[inline(always)]
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
-        let nothing = s.eq_i(touched, s.i(0));
-        let reference = s.or_m(nothing, s.lt(depth, planes.z0));
+        let reference = behind_reference(s, planes, touched, depth);
         let near = behind_layer(s, touched, depth, planes.near, planes.z_near);
         let mid = behind_layer(s, touched, depth, planes.mid, planes.z_mid);
         let far = behind_layer(s, touched, depth, planes.far, planes.z_far);

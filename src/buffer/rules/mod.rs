@@ -112,6 +112,12 @@ pub(super) fn live<S: Simd>(s: S, z0: S::F, coverage: S::I, depth: S::F) -> S::M
     s.and_not_m(s.eq_i(coverage, s.i(0)), s.lt(z0, depth))
 }
 
+/// Lanes hidden by the reference depth, or that touch no pixel.
+#[inline(always)]
+pub(super) fn behind_reference<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
+    s.or_m(s.eq_i(touched, s.i(0)), s.lt(depth, planes.z0))
+}
+
 /// Lanes hidden by a layer: `touched` is a subset of its pixels, and `depth` is farther.
 #[inline(always)]
 pub(super) fn behind_layer<S: Simd>(s: S, touched: S::I, depth: S::F, mask: S::I, z: S::F) -> S::M {

@@ -4,7 +4,7 @@
 //! farthest is lost to the reference, a nearer one is merged into the next one behind it). An empty layer is stored as
 //! a full one at the reference depth, so there are no special cases.
 
-use super::{Inserted, Planes, Rule, behind_layer};
+use super::{Inserted, Planes, Rule, behind_layer, behind_reference};
 use crate::buffer::BLOCK;
 use crate::simd::Simd;
 
@@ -107,8 +107,7 @@ impl Rule for ThreeLayer {
 
     #[inline(always)]
     fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
-        let nothing = s.eq_i(touched, s.i(0));
-        let reference = s.or_m(nothing, s.lt(depth, planes.z0));
+        let reference = behind_reference(s, planes, touched, depth);
         let near = behind_layer(s, touched, depth, planes.near, planes.z_near);
         let far = behind_layer(s, touched, depth, planes.far, planes.z_far);
         s.or_m(reference, s.or_m(near, far))

@@ -48,8 +48,7 @@ macro_rules! two_plane_layout {
 
         #[inline(always)]
         fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
-            let nothing = s.eq_i(touched, s.i(0));
-            let reference = s.or_m(nothing, s.lt(depth, planes.z0));
+            let reference = $crate::buffer::rules::behind_reference(s, planes, touched, depth);
             s.or_m(reference, $crate::buffer::rules::behind_layer(s, touched, depth, planes.near, planes.z_near))
         }
 
