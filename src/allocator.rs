@@ -141,7 +141,8 @@ pub(crate) fn try_collect<T>(items: impl ExactSizeIterator<Item = T>) -> Option<
 pub(crate) fn try_box<T>(value: T) -> Option<Box<T>> {
     let layout = Layout::new::<T>();
     assert!(layout.size() != 0);
-    // SAFETY: the size is not zero. The memory is written before the box owns it, and the box frees it with this layout.
+    // SAFETY: the size is not zero. The memory is written before the box owns it, and the box frees it with this
+    // layout.
     unsafe {
         let place = NonNull::new(std::alloc::alloc(layout).cast::<T>())?;
         place.write(value);

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! source/    mesh        vertices are read in chunks (or pages, if far apart), transformed, projected, snapped and marked;
-//!                        triangles that are back-facing, outside or without a pixel centre are culled, and the few that
+//!                        triangles that are back-facing, outside or without a pixel centre are culled, and the few
+//!                        that
 //!                        cross the near plane or leave the guard band are clipped
 //!            list        triangles that were projected into a list
 //!            binned      triangles that the pool binned

@@ -83,10 +83,10 @@ const RULES: [UpdateRule; 4] = [UpdateRule::ThreeLayer, UpdateRule::Quick, Updat
 const GOLDEN: [[[u64; 3]; 4]; 5] = [
     [
         // town
-        [0x8939_81e6_81ac_4976, 0x253b_5a3b_36a8_3605, 0x5fb4_172d_1258_f2db],
+        [0x5bda_5977_c36c_2185, 0xd781_be50_2473_e685, 0xd02e_68bb_e5d6_eb96],
         [0x51d9_9be4_2588_d24d, 0xd210_28c4_2893_4425, 0x11ad_2b3d_34b1_d303],
         [0xfe9a_1eba_91cd_9076, 0xe123_71fc_949c_ce85, 0x002c_b49c_5ca8_0719],
-        [0xcff0_e9ce_ad71_ae78, 0xd859_dfe8_0688_2425, 0xc1ac_4c27_d60f_6fcd],
+        [0x0173_c368_f21e_3791, 0xd859_dfe8_0688_2425, 0x79a7_7e31_f1cf_7f57],
     ],
     [
         // terrain
@@ -97,7 +97,7 @@ const GOLDEN: [[[u64; 3]; 4]; 5] = [
     ],
     [
         // blocks
-        [0x04b1_d8cb_ea1b_fc10, 0x9661_0878_3e74_21a5, 0xae18_4024_f414_f7c8],
+        [0x88cd_5a4d_f95e_81cc, 0x9661_0878_3e74_21a5, 0x6268_0bea_da6c_869c],
         [0x2e68_32af_21ad_e59d, 0x1602_cffc_ed45_d625, 0xff28_0e55_6827_a7b1],
         [0xa6a1_9a1f_34e0_d751, 0x9661_0878_3e74_21a5, 0xfb01_4595_e618_72aa],
         [0x8c7e_9225_7ccd_8873, 0x9661_0878_3e74_21a5, 0x993c_0c65_d635_4fe3],

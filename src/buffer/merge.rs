@@ -53,8 +53,9 @@ impl Row<'_> {
     fn merge<T: Simd, R: Rule, const ALIKE: bool>(self, s: T) {
         let Self { into, from, columns, y } = self;
         for x in columns {
-            // SAFETY: by the contract of `merge`, it is a tile of both buffers, and where vectors cover a block, `y` is the
-            // block's row. The region carries exclusive access. Both buffers were made for their rules.
+            // SAFETY: by the contract of `merge`, it is a tile of both buffers, and where vectors cover a
+            // block, `y` is the block's row. The region carries exclusive access. Both buffers were made
+            // for their rules.
             unsafe {
                 let other = TilePlace::new(from, x, y);
                 if ClearState::of::<T>(other).none_drawn() {

@@ -20,8 +20,8 @@ fn write_layers<R: Rule>(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
         for (column, pixels) in line.chunks_mut(8).enumerate() {
             let x = (column / (TILE_WIDTH as usize / 8)) as u32;
             let lane = row % TILE_HEIGHT as usize / 4 * 4 + column % 4;
-            // SAFETY: it is a tile of the buffer. Nobody draws meanwhile: that takes a `&mut` to the object, or a contract
-            // with the caller that forbids reading.
+            // SAFETY: it is a tile of the buffer. Nobody draws meanwhile: that takes a `&mut` to the
+            // object, or a contract with the caller that forbids reading.
             if unsafe { *buffer.z_min_of(x, y) } == CLEARED {
                 pixels.fill(NOTHING);
                 continue;

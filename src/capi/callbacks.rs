@@ -15,8 +15,8 @@ use crate::MaskedOcclusionCulling;
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free` are null
-/// or can be written.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free`
+/// are null or can be written.
 #[unsafe(export_name = symbol!(MOC_GetAllocFreeCallback))]
 pub unsafe extern "C" fn MOC_GetAllocFreeCallback(
     moc: *const MaskedOcclusionCulling,

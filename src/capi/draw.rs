@@ -32,8 +32,8 @@ pub unsafe extern "C" fn MOC_ClearBuffer(moc: *mut MaskedOcclusionCulling) -> MO
 /// few depths cannot represent, and never more. `other` is not changed. The two must have the same resolution and
 /// MOC_YAxis; they may differ in instruction set and update rule. Merging an object with itself changes nothing.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
-/// either.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is
+/// drawing into either.
 ///
 /// # Safety
 /// Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
@@ -65,8 +65,8 @@ pub unsafe extern "C" fn MOC_MergeBuffer(
 /// Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array. On an error nothing is merged.
 ///
 /// # Safety
-/// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
-/// thread uses `moc` meanwhile, and none changes the others.
+/// `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed.
+/// No other thread uses `moc` meanwhile, and none changes the others.
 #[unsafe(export_name = symbol!(MOC_MergeBuffers))]
 pub unsafe extern "C" fn MOC_MergeBuffers(
     moc: *mut MaskedOcclusionCulling,
@@ -113,9 +113,9 @@ pub(super) fn check_to_merge(moc: &MaskedOcclusionCulling, others: &[&MaskedOccl
 /// Triangles with a NaN, an infinite coordinate, or a corner farther than 2^40 are dropped; MOC_GetDroppedTriangles
 /// counts them.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
-/// or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
-/// are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count or, with
+/// 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
+/// that are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
 ///
 /// # Safety
 /// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -186,12 +186,13 @@ pub unsafe extern "C" fn MOC_RenderTrianglesChecked(
 
 /// MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
 ///
-/// Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or
-/// a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+/// Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too
+/// small or a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for
-/// the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+/// `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be
+/// read for the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can
+/// be written.
 #[unsafe(export_name = symbol!(MOC_RenderMesh))]
 pub unsafe extern "C" fn MOC_RenderMesh(
     moc: *mut MaskedOcclusionCulling,

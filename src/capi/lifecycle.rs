@@ -272,8 +272,8 @@ unsafe fn get<T: Copy>(
     Ok(())
 }
 
-/// Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may be used
-/// directly as long as no thread calls the pool.
+/// Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may
+/// be used directly as long as no thread calls the pool.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///

@@ -12,10 +12,10 @@ use super::status::{MOC_Status, guard};
 /// Receives a message about a call that was refused, or that probably did not do what was intended: `message` names the
 /// function, the argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
 ///
-/// `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK if it
-/// was not refused. `message` is in English and valid only during the callback. It is called on the thread that made the call,
-/// possibly on several threads concurrently, and while the library holds no lock of its own. It may call the library; refusals
-/// of those calls are not reported. It must not throw or longjmp.
+/// `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return,
+/// MOC_STATUS_OK if it was not refused. `message` is in English and valid only during the callback. It is called on
+/// the thread that made the call, possibly on several threads concurrently, and while the library holds no lock of
+/// its own. It may call the library; refusals of those calls are not reported. It must not throw or longjmp.
 pub type MOC_MessageCallback = Option<unsafe extern "C" fn(user: *mut c_void, status: i32, message: *const c_char)>;
 
 #[derive(Clone, Copy)]
@@ -24,7 +24,8 @@ struct Listener {
     user: *mut c_void,
 }
 
-// SAFETY: the library never dereferences `user`; MOC_SetMessageCallback requires a callback that any thread may call with it.
+// SAFETY: the library never dereferences `user`; MOC_SetMessageCallback requires a callback that any thread may call
+// with it.
 unsafe impl Send for Listener {}
 
 static LISTENER: Mutex<Option<Listener>> = Mutex::new(None);
@@ -39,16 +40,16 @@ thread_local! {
     static DOUBT: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
-/// From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with `user` as
-/// its first argument; null (the default): none. There is one callback for the whole process.
+/// From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with
+/// `user` as its first argument; null (the default): none. There is one callback for the whole process.
 ///
 /// When it returns, another thread may still be running the previous callback.
 ///
 /// Errors: none.
 ///
 /// # Safety
-/// `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is replaced and
-/// every call that began before that has returned.
+/// `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is
+/// replaced and every call that began before that has returned.
 #[unsafe(export_name = symbol!(MOC_SetMessageCallback))]
 pub unsafe extern "C" fn MOC_SetMessageCallback(callback: MOC_MessageCallback, user: *mut c_void) -> MOC_Status {
     guard(|| {
@@ -59,8 +60,8 @@ pub unsafe extern "C" fn MOC_SetMessageCallback(callback: MOC_MessageCallback, u
     })
 }
 
-/// The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText and
-/// MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
+/// The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus,
+/// MOC_StatusText and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
 #[unsafe(export_name = symbol!(MOC_GetLastStatus))]
 pub extern "C" fn MOC_GetLastStatus() -> i32 {
     // While a thread is ending, its thread-local variables may be gone.
@@ -96,8 +97,8 @@ pub(super) fn note(function: &str, doubt: impl FnOnce() -> Option<&'static str>)
     }
 }
 
-/// Notes that the call under way probably does not do what was intended, to be reported when it ends under the name of the
-/// exported function.
+/// Notes that the call under way probably does not do what was intended, to be reported when it ends under the name
+/// of the exported function.
 #[inline]
 pub(super) fn doubt(doubt: impl FnOnce() -> Option<&'static str>) {
     if LISTENING.load(Relaxed) {

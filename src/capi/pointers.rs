@@ -22,10 +22,12 @@ pub(super) unsafe fn object_mut<'a>(
     unsafe { moc.as_mut() }.ok_or(NO_OBJECT)
 }
 
-/// The same for calls that change the object; refused while its pool is drawing into it, since other threads then read it.
+/// The same for calls that change the object; refused while its pool is drawing into it, since other threads then
+/// read it.
 ///
 /// # Safety
-/// Null or from `MOC_Create` and not destroyed; nothing else uses the object meanwhile, except a pool that is drawing into it.
+/// Null or from `MOC_Create` and not destroyed; nothing else uses the object meanwhile, except a pool that is drawing
+/// into it.
 #[inline]
 pub(super) unsafe fn idle_object_mut<'a>(
     moc: *mut MaskedOcclusionCulling,

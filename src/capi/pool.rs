@@ -34,8 +34,8 @@ pub(super) unsafe fn handle<'a>(pool: *const MOC_Threadpool) -> Result<&'a MOC_T
     unsafe { pool.as_ref() }.ok_or(Refusal::new(MOC_Status::MOC_STATUS_NULL_POINTER, "the pool is null"))
 }
 
-/// Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number, counted from
-/// 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
+/// Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number,
+/// counted from 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
 pub type MOC_ThreadStart = Option<unsafe extern "C" fn(user: *mut c_void, number: u32)>;
 
 /// Settings of MOC_ThreadpoolCreateFrom. Zero the struct, then set `size` and whatever should differ from the defaults.
@@ -44,16 +44,17 @@ pub type MOC_ThreadStart = Option<unsafe extern "C" fn(user: *mut c_void, number
 pub struct MOC_ThreadpoolSettings {
     /// sizeof(MOC_ThreadpoolSettings).
     pub size: u32,
-    /// Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the caller's, but at
-    /// least one. 0: the work is done by the calls that flush or submit, and by MOC_ThreadpoolWorkOnce.
+    /// Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the
+    /// caller's, but at least one. 0: the work is done by the calls that flush or submit, and by
+    /// MOC_ThreadpoolWorkOnce.
     pub threads: u32,
-    /// Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than 128x64 pixels,
-    /// and the screen is divided into rows first.
+    /// Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than
+    /// 128x64 pixels, and the screen is divided into rows first.
     pub bins_w: u32,
     /// See `bins_w`.
     pub bins_h: u32,
-    /// How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into batches of at
-    /// most half as many, so a larger number makes them cheaper.
+    /// How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into
+    /// batches of at most half as many, so a larger number makes them cheaper.
     pub max_jobs: u32,
     /// Processors available to the pool and its caller; 0: as many as the system reports.
     pub processors: u32,
@@ -72,7 +73,8 @@ pub struct MOC_ThreadpoolSettings {
 /// The program's pointer, passed to its callback on other threads.
 struct User(*mut c_void);
 
-// SAFETY: it is only passed to the callback; the caller of MOC_ThreadpoolCreateFrom vouches that other threads may use it.
+// SAFETY: it is only passed to the callback; the caller of MOC_ThreadpoolCreateFrom vouches that other threads may
+// use it.
 unsafe impl Send for User {}
 // SAFETY: as above.
 unsafe impl Sync for User {}
@@ -148,15 +150,15 @@ pub unsafe extern "C" fn MOC_ThreadpoolCreate(
     guard(|| unsafe { create(settings, out) })
 }
 
-/// MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names, and a
-/// callback when a thread starts.
+/// MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names,
+/// and a callback when a thread starts.
 ///
-/// Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is
-/// too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+/// Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a
+/// `size` that is too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
 ///
 /// # Safety
-/// `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C string, and
-/// its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
+/// `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C
+/// string, and its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolCreateFrom))]
 pub unsafe extern "C" fn MOC_ThreadpoolCreateFrom(
     settings: *const MOC_ThreadpoolSettings,
@@ -259,9 +261,10 @@ pub unsafe extern "C" fn MOC_ThreadpoolFlush(pool: *const MOC_Threadpool) -> MOC
     })
 }
 
-/// Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system, alongside the
-/// pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is pending that is not already
-/// being worked on. A piece is one batch of calls to project, or the batches one bin has to draw: usually tens of microseconds.
+/// Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system,
+/// alongside the pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is
+/// pending that is not already being worked on. A piece is one batch of calls to project, or the batches one bin has
+/// to draw: usually tens of microseconds.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -280,8 +283,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolWorkOnce(pool: *const MOC_Threadpool, wor
     })
 }
 
-/// Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a flush that
-/// never sleeps.
+/// Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a
+/// flush that never sleeps.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
@@ -336,16 +339,16 @@ pub unsafe extern "C" fn MOC_ThreadpoolGetBins(
 /// Makes the pool draw into `moc` from now on (null: into no object), once everything submitted before is drawn. The
 /// object keeps its near plane.
 ///
-/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
-/// while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
-/// been drawn so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY);
-/// MOC_Flush waits for the pool.
+/// The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any
+/// thread, even while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs):
+/// they answer from what has been drawn so far. Calls that would change or copy its buffer while work is in flight
+/// are refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
 ///
 /// # Safety
-/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; no other
-/// thread uses it or the pool's previous object meanwhile.
+/// `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed;
+/// no other thread uses it or the pool's previous object meanwhile.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolSetBuffer))]
 pub unsafe extern "C" fn MOC_ThreadpoolSetBuffer(
     pool: *const MOC_Threadpool,

@@ -109,8 +109,8 @@ pub unsafe extern "C" fn MOC_ThreadpoolClearBuffer(pool: *const MOC_Threadpool) 
 /// Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
-/// unchanged as those of MOC_ThreadpoolRenderMesh.
+/// As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and
+/// stay unchanged as those of MOC_ThreadpoolRenderMesh.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderTriangles))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
     pool: *const MOC_Threadpool,
@@ -136,9 +136,9 @@ pub unsafe extern "C" fn MOC_ThreadpoolRenderTriangles(
 /// Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
 ///
 /// # Safety
-/// As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what it points to
-/// as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or
-/// MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
+/// As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what
+/// it points to as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush,
+/// MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
 #[unsafe(export_name = symbol!(MOC_ThreadpoolRenderMesh))]
 pub unsafe extern "C" fn MOC_ThreadpoolRenderMesh(pool: *const MOC_Threadpool, mesh: *const MOC_Mesh) -> MOC_Status {
     // SAFETY: the caller's contract.

@@ -161,9 +161,9 @@ pub unsafe extern "C" fn MOC_TestRect(
     unsafe { guard_result_as_set(result, query) }
 }
 
-/// [`MOC_TestRect`] run in the default floating-point environment. It calls the exported function again, so that the fast path
-/// is compiled and inlined only once: a small rectangle takes ten nanoseconds. The arguments come in pairs, which are passed in
-/// registers.
+/// [`MOC_TestRect`] run in the default floating-point environment. It calls the exported function again, so that the
+/// fast path is compiled and inlined only once: a small rectangle takes ten nanoseconds. The arguments come in pairs,
+/// which are passed in registers.
 ///
 /// # Safety
 /// As there.
@@ -260,8 +260,8 @@ unsafe fn depth(
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or can be read
-/// and written for the number of bytes given in its `size`.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or
+/// can be read and written for the number of bytes given in its `size`.
 #[unsafe(export_name = symbol!(MOC_GetStatistics))]
 pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, out: *mut MOC_Statistics) -> MOC_Status {
     guard(|| {
@@ -278,14 +278,14 @@ pub unsafe extern "C" fn MOC_GetStatistics(moc: *const MaskedOcclusionCulling, o
     })
 }
 
-/// Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite coordinate, or a
-/// distance beyond 2^40. They are counted whether or not the settings ask for statistics.
+/// Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite
+/// coordinate, or a distance beyond 2^40. They are counted whether or not the settings ask for statistics.
 ///
 /// Errors: MOC_STATUS_NULL_POINTER.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
-/// written.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can
+/// be written.
 #[unsafe(export_name = symbol!(MOC_GetDroppedTriangles))]
 pub unsafe extern "C" fn MOC_GetDroppedTriangles(moc: *const MaskedOcclusionCulling, out: *mut i64) -> MOC_Status {
     guard(|| {

@@ -81,12 +81,12 @@ pub struct MOC_RecordedCall {
 /// Changing the near plane or the resolution ends a recording that already contains a call. Merges and triangle lists
 /// are not recorded.
 ///
-/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
-/// file cannot be created, or on Windows if `path` is not UTF-8.
+/// Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE
+/// if the file cannot be created, or on Windows if `path` is not UTF-8.
 ///
 /// # Safety
-/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
-/// a zero.
+/// `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or
+/// ends with a zero.
 #[unsafe(export_name = symbol!(MOC_RecorderStart))]
 pub unsafe extern "C" fn MOC_RecorderStart(moc: *const MaskedOcclusionCulling, path: *const c_char) -> MOC_Status {
     // SAFETY: the caller's contract.
@@ -229,7 +229,8 @@ pub unsafe extern "C" fn MOC_RecordingDestroy(recording: *mut MOC_Recording) -> 
 /// Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
 ///
 /// # Safety
-/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
+/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its
+/// `size`.
 #[unsafe(export_name = symbol!(MOC_RecordingGetInfo))]
 pub unsafe extern "C" fn MOC_RecordingGetInfo(
     recording: *const MOC_Recording,
@@ -264,7 +265,8 @@ pub unsafe extern "C" fn MOC_RecordingGetInfo(
 /// small; nothing is written.
 ///
 /// # Safety
-/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
+/// `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its
+/// `size`.
 #[unsafe(export_name = symbol!(MOC_RecordingGetCall))]
 pub unsafe extern "C" fn MOC_RecordingGetCall(
     recording: *const MOC_Recording,

@@ -1,4 +1,5 @@
-//! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong with it.
+//! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong
+//! with it.
 
 use super::status::{self, MOC_Status};
 use crate::Error;

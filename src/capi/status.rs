@@ -61,8 +61,8 @@ pub enum MOC_Status {
     MOC_STATUS_FILE = 12,
     /// A file is not a recording, or it is truncated or corrupt.
     MOC_STATUS_INVALID_RECORDING = 13,
-    /// A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
-    /// recording.
+    /// A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or
+    /// it is already recording.
     MOC_STATUS_BUSY = 14,
 }
 
@@ -110,8 +110,8 @@ pub(super) fn done() -> MOC_Status {
     MOC_Status::MOC_STATUS_OK
 }
 
-/// Runs the body of an exported function; a panic becomes a status. The closure must be written inside that function: messages
-/// take the function's name from it.
+/// Runs the body of an exported function; a panic becomes a status. The closure must be written inside that function:
+/// messages take the function's name from it.
 pub(super) fn guard<F: FnOnce() -> Result<(), Refusal>>(body: F) -> MOC_Status {
     in_default_environment(|| run(messages::function_of::<F>, body))
 }

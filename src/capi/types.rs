@@ -114,8 +114,8 @@ pub type MOC_AlignedAlloc = Option<unsafe extern "C" fn(alignment: usize, size: 
 /// Frees memory allocated by the MOC_AlignedAlloc of the same object. Called from any thread; must not throw.
 pub type MOC_AlignedFree = Option<unsafe extern "C" fn(ptr: *mut c_void)>;
 
-/// Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may enter the
-/// library, so this function catches it and returns null. It is called wherever `alloc` would be.
+/// Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may
+/// enter the library, so this function catches it and returns null. It is called wherever `alloc` would be.
 pub type MOC_CallAlloc =
     Option<unsafe extern "C" fn(alloc: MOC_AlignedAlloc, alignment: usize, size: usize) -> *mut c_void>;
 

@@ -91,8 +91,8 @@ impl CullingThreadpool {
     /// Makes a pool whose threads sleep until [`Self::wake_threads`].
     ///
     /// # Errors
-    /// [`Error::InvalidSize`] if `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` is above 1,024; [`Error::OutOfMemory`] if
-    /// the system cannot start a thread.
+    /// [`Error::InvalidSize`] if `bins_w`, `bins_h` or `max_jobs` is 0, or `threads` is above 1,024;
+    /// [`Error::OutOfMemory`] if the system cannot start a thread.
     pub fn new(settings: ThreadpoolSettings) -> Result<Self, Error> {
         let ThreadpoolSettings { bins_w, bins_h, max_jobs, .. } = settings;
         if bins_w == 0 || bins_h == 0 || max_jobs == 0 || settings.threads > MAX_THREADS {
@@ -189,9 +189,10 @@ impl CullingThreadpool {
     /// [`Taken`] if the object belongs to another pool; nothing changes.
     ///
     /// # Safety
-    /// The object does not move until another one is set, the pool is dropped, or the object itself is dropped; the two may be
-    /// dropped in either order. Until then no `&mut` to it is used while the pool has work in flight or is being called; `&`
-    /// may be used for queries at any time, except while the pool sets an object or a resolution.
+    /// The object does not move until another one is set, the pool is dropped, or the object itself is dropped;
+    /// the two may be dropped in either order. Until then no `&mut` to it is used while the pool has work in
+    /// flight or is being called; `&` may be used for queries at any time, except while the pool sets an object
+    /// or a resolution.
     pub(crate) unsafe fn set_buffer_unowned(&self, moc: Option<NonNull<MaskedOcclusionCulling>>) -> Result<(), Taken> {
         // SAFETY: the caller's contract.
         unsafe { self.gate.exchange(moc.map(|moc| (moc, false))) }

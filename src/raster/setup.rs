@@ -149,8 +149,8 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
 ) -> Alive {
     let Setup { s, buffer, both_sides } = setup;
     let bounds = ScreenBounds::new::<C>(s, buffer.size(), &corners);
-    // SAFETY: `z_min` is read word by word, which is allowed while others draw (see `Region`); the scope's tiles are the
-    // buffer's.
+    // SAFETY: `z_min` is read word by word, which is allowed while others draw (see `Region`); the scope's tiles
+    // are the buffer's.
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
     if skip_hidden && s.mask_bits(s.and_m(active, bounds.inside)) & !hidden == 0 {
         return Alive::default();

@@ -53,8 +53,8 @@ pub(crate) struct Input<'a> {
 /// early.
 ///
 /// # Safety
-/// The batch and `alive` come from one call of [`set_up`](super::setup::set_up) with this buffer and the coverage of `op`. The
-/// clip lies within the buffer, and `op` may be applied to any of its tiles.
+/// The batch and `alive` come from one call of [`set_up`](super::setup::set_up) with this buffer and the coverage of
+/// `op`. The clip lies within the buffer, and `op` may be applied to any of its tiles.
 #[inline(always)]
 pub(crate) unsafe fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O) -> Option<u32> {
     let Input { buffer, clip, batch, alive, lists } = input;

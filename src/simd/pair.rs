@@ -1,7 +1,7 @@
 //! Doubles the number of lanes: two vectors of a narrower instruction set side by side.
 //!
-//! SAFETY of every block without its own comment: the caller of an `unsafe fn` guarantees it for the whole vector, and so
-//! for each half.
+//! SAFETY of every block without its own comment: the caller of an `unsafe fn` guarantees it for the whole vector,
+//! and so for each half.
 
 use super::{Outlined, Simd, strided};
 

@@ -13,8 +13,8 @@ use crate::statistics::Tally;
 
 /// Draws into a region.
 ///
-/// `COARSE`: the region consists of whole coarse cells. Known when compiled, so that the HiZ test of small draws has no code for
-/// the other case.
+/// `COARSE`: the region consists of whole coarse cells. Known when compiled, so that the HiZ test of small draws has
+/// no code for the other case.
 pub(crate) struct Draw<'a, const COARSE: bool> {
     region: Region<'a>,
 }

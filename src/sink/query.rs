@@ -93,7 +93,8 @@ impl<T: Simd, R: Rule> Outlined<T> for CompareTiles<'_, Compare<'_, R>> {
     #[inline(always)]
     fn run(self, t: T) -> Self::Output {
         let Self { input, mut op } = self;
-        // SAFETY: `Query` made the input from triangles that it set up; the clip is the whole buffer, and nothing is written.
+        // SAFETY: `Query` made the input from triangles that it set up; the clip is the whole buffer, and
+        // nothing is written.
         (unsafe { traverse(t, input, &mut op) }, op.touches)
     }
 }

@@ -28,8 +28,8 @@ pub(crate) struct Mesh<'a> {
 
 impl<'a> Mesh<'a> {
     /// # Safety
-    /// As long as the mesh exists, every vertex from the lowest to the highest index can be read: its x, y and w (or z), and
-    /// in vertices of 12 or 16 bytes with y at 4 and w (or z) at 8 or 12, also what lies in between.
+    /// As long as the mesh exists, every vertex from the lowest to the highest index can be read: its x, y and w
+    /// (or z), and in vertices of 12 or 16 bytes with y at 4 and w (or z) at 8 or 12, also what lies in between.
     #[inline(always)]
     pub unsafe fn new(
         vertices: VertexSource,

@@ -5,7 +5,8 @@
 //! four is removed: if together they cover every pixel, the farthest becomes the reference; otherwise the one whose
 //! loss costs the least depth goes. The farthest is lost to the reference; a nearer one is merged into the next one
 //! behind it, whose pixels already include its own because the masks are nested; one without pixels of its own costs
-//! nothing. An empty layer is stored as a full one at the reference depth, so there are no special cases.
+//! nothing. The farthest may go only if its loss is at most the reference's own depth. An empty layer is stored as a
+//! full one at the reference depth, so there are no special cases.
 //!
 //! It gives sub-tiles more time to fill: with two layers, and often with three, a sub-tile covered by four or more
 //! small pieces has to give up depth before it is full. It costs 8 bytes per sub-tile, and two more planes to load and
@@ -84,7 +85,7 @@ impl Rule for FourLayer {
         let full = s.i(-1);
         let full_d = s.eq_i(mask_d, full);
         let loss_bc = s.min(loss_b, loss_c);
-        let keep_d = s.and_not_m(full_d, s.lt(s.min(loss_a, loss_bc), loss_d));
+        let keep_d = s.and_not_m(full_d, s.lt(s.min(s.min(loss_a, z0), loss_bc), loss_d));
         let drop_a = s.and_m(keep_d, s.le(loss_a, loss_bc));
         let drop_a_or_b = s.and_m(keep_d, s.le(s.min(loss_a, loss_b), loss_c));
         // The nearest full layer: if a layer is full, so are those behind it.

@@ -201,9 +201,40 @@ impl Model {
         };
         // On a tie the farthest layer goes, or else the nearest of those with equal losses.
         let least = (0..last).reduce(|a, b| if loss(b) < loss(a) { b } else { a }).unwrap_or(last);
-        let dropped = if loss(last) <= loss(least) { last } else { least };
+        let dropped = if loss(last) <= loss(least).min(self.reference) {
+            last
+        } else if self.layers.len() == 3 && loss(1) > 2.0 * self.layers[2].1 && loss(0) <= 3.0 * loss(1) {
+            // Only with three layers.
+            0
+        } else {
+            least
+        };
         self.layers.remove(dropped);
     }
+}
+
+/// Once every pixel has been drawn, at whatever depths and in whatever order, the reference is no longer empty.
+fn fills<R: Rule>() {
+    sequences::<R>(|steps, all| {
+        for lane in 0..N {
+            let mut drawn = 0;
+            for (step, seen) in steps.iter().zip(all) {
+                drawn |= step.mask[lane];
+                let reference = seen.layers[0][lane].1;
+                assert_eq!(reference > 0.0, drawn == FULL, "{drawn:x} drawn, the reference is {reference}");
+            }
+        }
+    });
+}
+
+#[test]
+fn three_layers_fill() {
+    fills::<ThreeLayer>();
+}
+
+#[test]
+fn four_layers_fill() {
+    fills::<FourLayer>();
 }
 
 fn is_the_model<R: Rule>() {

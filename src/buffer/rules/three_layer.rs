@@ -3,6 +3,9 @@
 //! A triangle temporarily makes a third layer; of the three, the one whose loss costs the least depth is dropped (the
 //! farthest is lost to the reference, a nearer one is merged into the next one behind it). An empty layer is stored as
 //! a full one at the reference depth, so there are no special cases.
+//!
+//! The farthest may go only if its loss is at most the reference's own depth: at most half of its depth. With an empty
+//! reference it therefore stays, and a sub-tile fills as soon as its pixels are covered, however many depths there are.
 
 use super::{Inserted, Planes, Rule, behind_layer, behind_reference};
 use crate::buffer::BLOCK;
@@ -70,8 +73,11 @@ impl Rule for ThreeLayer {
         let loss_c = s.select(s.eq_i(mask_c, mask_b), s.f(0.0), s.sub(z_c, z0));
         let full = s.i(-1);
         let full_c = s.eq_i(mask_c, full);
-        let drop_c = s.or_m(full_c, s.le(loss_c, s.min(loss_a, loss_b)));
-        let drop_a = s.and_not_m(drop_c, s.le(loss_a, loss_b));
+        let drop_c = s.or_m(full_c, s.le(loss_c, s.min(s.min(loss_a, z0), loss_b)));
+        // Dropping B leaves its pixels at C's depth: where that is less than a third of B's, A goes unless its loss is
+        // three times as large.
+        let far_behind = s.lt(s.add(z_c, z_c), loss_b);
+        let drop_a = s.and_not_m(drop_c, s.le(loss_a, s.select(far_behind, s.mul(loss_b, s.f(3.0)), loss_b)));
         // The nearest full layer: if a layer is full, so are those behind it.
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);

@@ -75,8 +75,8 @@ impl TileRows<'_> {
     #[inline(always)]
     pub unsafe fn tile<T: Simd, S: TileOp<T>>(&self, t: T, k: usize) -> Tile<T> {
         let lists = &*self.lists;
-        // SAFETY: the caller's contract; the tile rows of counted tiles were bounded, and with sixteen lanes the tiles were
-        // located.
+        // SAFETY: the caller's contract; the tile rows of counted tiles were bounded, and with sixteen lanes
+        // the tiles were located.
         unsafe {
             let (tile_row, x) = unpack(lists.tiles.named.get_unchecked(k).assume_init());
             let sub_columns = t.and(t.iota(), t.i(3));
