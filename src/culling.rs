@@ -245,9 +245,14 @@ impl MaskedOcclusionCulling {
     }
 
     pub(crate) fn render_mesh(&mut self, mesh: &Mesh<'_>) -> CullingResult {
-        let (level, camera) = (self.level, self.camera(mesh.options()));
-        let (result, tally) = kernel::draw(level, self.region(), &camera, mesh);
-        self.counters.add_draw_alone(self.statistics, &tally);
+        let result = if mesh.triangles().is_empty() {
+            CullingResult::ViewCulled
+        } else {
+            let (level, camera) = (self.level, self.camera(mesh.options()));
+            let (result, tally) = kernel::draw(level, self.region(), &camera, mesh);
+            self.counters.add_draw_alone(self.statistics, &tally);
+            result
+        };
         self.recorder.render_triangles(Some(result), mesh);
         result
     }

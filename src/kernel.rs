@@ -1,10 +1,9 @@
 //! The path of a triangle: any source, any sink, one driver, for one instruction set.
 //!
 //! ```text
-//! source/    mesh        vertices are read in chunks (or pages, if far apart), transformed, projected, snapped and marked;
-//!                        triangles that are back-facing, outside or without a pixel centre are culled, and the few
-//!                        that
-//!                        cross the near plane or leave the guard band are clipped
+//! source/    mesh        vertices are read in chunks (or pages, if far apart), transformed, projected, snapped and
+//!                        marked; triangles that are back-facing, outside or without a pixel centre are culled, and
+//!                        the few that cross the near plane or leave the guard band are clipped
 //!            list        triangles that were projected into a list
 //!            binned      triangles that the pool binned
 //! raster/    queue       full vectors of triangles
@@ -28,7 +27,7 @@ use crate::CullingResult;
 use crate::bins::TriList;
 use crate::buffer::{Buffer, Region};
 use crate::geometry::Camera;
-use crate::simd::{self, Job, Level, Simd};
+use crate::simd::{self, Job, Level, MAX_LANES, Simd};
 use crate::sink::{AppendToLists, Bin, BinBounds, BinnedTriangles, Draw, Query, TriangleSink};
 use crate::source::{self, Binned, IndexRange, Mesh, MeshTriangles, TriangleSource};
 use crate::statistics::Tally;
@@ -41,7 +40,9 @@ pub(crate) fn draw(level: Level, region: Region<'_>, camera: &Camera, mesh: &Mes
 
 /// Tests a mesh. The answer is only valid if nobody drew in the meantime.
 pub(crate) fn test(level: Level, buffer: &Buffer, camera: &Camera, mesh: &Mesh<'_>) -> (CullingResult, Tally) {
-    simd::run(level, Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Query::new(buffer) })
+    let job = Drive { buffer, source: MeshTriangles::new(mesh, camera), sink: Query::new(buffer) };
+    // Where one or two vectors decide, narrow ones decide sooner.
+    if mesh.triangles().len() <= 3 * MAX_LANES { simd::run_on_eight_lanes(level, job) } else { simd::run(level, job) }
 }
 
 /// Projects a mesh into lists, `bins.0` by `bins.1` of `bin_size` pixels. True if a list was full.

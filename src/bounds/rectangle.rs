@@ -6,6 +6,7 @@
 
 use core::marker::PhantomData;
 
+use crate::buffer::pixels::shows;
 use crate::buffer::rules::{Rule, with_rule};
 use crate::buffer::{Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH, TileRect};
 use crate::simd::{self, Job, Level, Simd};
@@ -48,6 +49,17 @@ fn test_spans(
     }
     let depth = 1.0 / w_min * NEARER;
     let pixels = Pixels::touched(buffer, y_axis, [x_min, y_min, x_max, y_max]);
+    // What is visible usually shows in the middle. Statistics count the tiles that the rest looks at.
+    let (column, row) = (pixels.x0.midpoint(pixels.x1), pixels.y0.midpoint(pixels.y1));
+    // SAFETY: a pixel of the buffer, and its tile. For concurrent draws, see `SmallRectangle`.
+    let seen = unsafe {
+        *buffer.z_min_of(column / TILE_WIDTH, row / TILE_HEIGHT) <= depth
+            && !buffer.statistics()
+            && shows(buffer, column, row, depth)
+    };
+    if seen {
+        return (CullingResult::Visible, 0);
+    }
     let tiles = pixels.tiles();
     let open = if SmallRectangle::holds(tiles) {
         let open = simd::run(level, SmallRectangle { buffer, tiles, depth });

@@ -1,4 +1,5 @@
-//! The depth of every pixel, for visualisation: the bound that the buffer guarantees.
+//! Single pixels: the depth of each one, for visualisation (the bound that the buffer guarantees), and whether
+//! something shows in one.
 
 use super::rules::{Rule, with_rule};
 use super::{BLOCK, Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH};
@@ -42,4 +43,38 @@ fn write_layers<R: Rule>(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
             }
         }
     }
+}
+
+/// Is anything that touches this pixel at `depth`, or nearer, visible as far as the buffer can tell? What it says is what
+/// a query of the sub-tile says of any pixels that include this one.
+///
+/// # Safety
+/// It is a pixel of the buffer, and nobody is drawing.
+#[inline(always)]
+pub(crate) unsafe fn shows(buffer: &Buffer, column: u32, row: u32, depth: f32) -> bool {
+    with_rule!(buffer.rule(), R => {
+        // SAFETY: the caller's contract; the buffer was made for the rule.
+        unsafe { shows_in_layers::<R>(buffer, column, row, depth) }
+    })
+}
+
+/// # Safety
+/// As [`shows`]; the buffer was made for the rule `R`.
+#[inline(always)]
+unsafe fn shows_in_layers<R: Rule>(buffer: &Buffer, column: u32, row: u32, depth: f32) -> bool {
+    let (x, y) = (column / TILE_WIDTH, row / TILE_HEIGHT);
+    let lane = (row % TILE_HEIGHT / 4 * 4 + column % TILE_WIDTH / 8) as usize;
+    let bit = 1 << (row % 4 * 8 + column % 8);
+    // SAFETY: the caller's contract.
+    if unsafe { *buffer.z_min_of(x, y) } == CLEARED {
+        return true;
+    }
+    let planes = buffer.tile(x, y);
+    // SAFETY: as in `write_layers`.
+    let word = |plane: usize| unsafe { *planes.add(plane * BLOCK + lane) };
+    let mut hidden = depth < f32::from_bits(word(0));
+    for &(mask, z) in R::LAYER_PLANES {
+        hidden |= (word(mask) & bit != 0) & (depth < f32::from_bits(word(z)));
+    }
+    !hidden
 }

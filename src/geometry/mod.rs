@@ -4,6 +4,7 @@
 pub(crate) mod camera;
 pub(crate) mod clip;
 pub(crate) mod coverage;
+pub(crate) mod extent;
 pub(crate) mod project;
 pub(crate) mod screen_bounds;
 

@@ -47,9 +47,25 @@ pub(crate) fn dot<S: Simd>(s: S, row: &[S::F; 4], x: S::F, y: S::F, z: S::F) -> 
     s.add(s.add(s.mul(x, row[0]), s.mul(y, row[1])), s.add(s.mul(z, row[2]), row[3]))
 }
 
+/// Vertices on the screen: x and y in 1/256 pixel, and 1/w; or marks.
+pub(crate) enum Projected<S: Simd> {
+    /// None is marked.
+    Regular([S::F; 3]),
+    /// At least one is.
+    Marked([S::F; 3]),
+}
+
 /// Clip space (x, y, w) to the screen: x and y in 1/256 pixel, and 1/w; or marks.
 #[inline(always)]
-pub(crate) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [S::F; 3] {
+pub(crate) fn project<S: Simd>(s: S, camera: &Camera, clip: [S::F; 3]) -> [S::F; 3] {
+    match project_or_mark(s, camera, clip) {
+        Projected::Regular(v) | Projected::Marked(v) => v,
+    }
+}
+
+/// As [`project`], and says whether any is marked.
+#[inline(always)]
+pub(crate) fn project_or_mark<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> Projected<S> {
     let z = s.div(s.f(1.0), w);
     let across = s.mul(s.mul(x, z), s.f(camera.half_width));
     let down = s.mul(s.mul(y, z), s.f(camera.row_scale));
@@ -59,7 +75,7 @@ pub(crate) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let column = s.to_f(s.round(s.add(across, s.f(camera.half_width))));
     let row = s.to_f(s.round(s.add(down, s.f(camera.half_height))));
     if s.all(regular) {
-        return [column, row, z];
+        return Projected::Regular([column, row, z]);
     }
     let minus_w = s.sub(s.f(0.0), w);
     let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
@@ -69,7 +85,8 @@ pub(crate) fn project<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> [
     let largest = s.max(s.max(s.abs(x), s.abs(y)), s.abs(w));
     let finite = s.and_m(s.le(largest, s.f(f32::MAX)), s.and_m(s.eq(x, x), s.eq(y, y)));
     marks = s.select_i(finite, marks, s.i(outcode::MARK as i32));
-    [s.select(regular, column, s.float_of_bits(marks)), s.select(regular, row, s.f(0.0)), z]
+    let x = s.select(regular, column, s.float_of_bits(marks));
+    Projected::Marked([x, s.select(regular, row, s.f(0.0)), z])
 }
 
 /// A bit in the lanes of a mask.

@@ -47,7 +47,8 @@ const FINE_MARGIN: f32 = 1.0 / (1_u64 << 40) as f32;
 /// The result of set-up, a bit per lane.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Alive {
-    /// Front-facing triangles whose bounds hold a pixel; all others are ignored.
+    /// Front-facing triangles whose bounds hold a pixel; all others are ignored. None if all are hidden and a draw skips
+    /// those.
     pub rasterized: u32,
     /// Those of them that the HiZ does not hide.
     pub lanes: u32,
@@ -152,8 +153,9 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
     // SAFETY: `z_min` is read word by word, which is allowed while others draw (see `Region`); the scope's tiles
     // are the buffer's.
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
-    if skip_hidden && s.mask_bits(s.and_m(active, bounds.inside)) & !hidden == 0 {
-        return Alive::default();
+    let inside = s.mask_bits(s.and_m(active, bounds.inside));
+    if skip_hidden && inside & !hidden == 0 {
+        return Alive { rasterized: if C::NEEDS_CENTRE { 0 } else { inside }, lanes: 0 };
     }
     let oriented = Oriented::new(s, both_sides, corners);
     let (rasterized, wide) = oriented.facing::<C, false>(s, &bounds, active, batch);

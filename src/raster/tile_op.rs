@@ -1,5 +1,6 @@
 //! The operations of the traversal in a tile: an update or a comparison.
 
+use super::tile_rows::TILE_ROWS;
 use crate::buffer::TilePlace;
 use crate::geometry::Coverage;
 use crate::simd::Simd;
@@ -8,6 +9,8 @@ use crate::simd::Simd;
 pub(crate) trait TileOp<T: Simd> {
     /// Number of the buffer's planes that it reads.
     const PLANES: usize;
+    /// How many tile rows to list at first: few if the first tile may end the traversal.
+    const FIRST_TILE_ROWS: usize = TILE_ROWS;
     /// The kind of coverage and depth bound it needs.
     type Coverage: Coverage;
 

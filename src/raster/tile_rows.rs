@@ -12,6 +12,7 @@ use core::mem::MaybeUninit;
 use super::batch::{Batch, Lanes};
 use super::tile_op::TileOp;
 use crate::buffer::{Buffer, SUB_TILES, TILE_HEIGHT, TILE_WIDTH, TileRect};
+use crate::geometry::Coverage;
 use crate::simd::{MAX_LANES, Simd};
 use candidate_tiles::{CandidateTiles, HALF_SHIFT, planes_before};
 
@@ -48,8 +49,8 @@ pub(super) struct TileRowLists {
     first: Words,
     /// Number of tiles, possibly 0.
     count: Words,
-    /// The triangle's nearest depth if it reaches the row of tiles, else [`HIDDEN`]; with sixteen lanes, one for the
-    /// upper and one for the lower row.
+    /// The nearest depth that the triangle has in the row of tiles, or [`HIDDEN`] if it does not reach it; with sixteen
+    /// lanes, one for the upper and one for the lower row.
     upper: Floats,
     lower: Floats,
     /// Of the first row of tiles at column 0: the byte offset of the planes, and the tile index.
@@ -82,6 +83,8 @@ pub(super) struct TileRows<'a> {
     /// Number of tile rows listed, and the next one to process.
     listed: usize,
     next: usize,
+    /// How many to list next.
+    room: usize,
 }
 
 /// Candidates found at a time.
@@ -94,7 +97,7 @@ impl<'a> TileRows<'a> {
     /// # Safety
     /// Set-up stored the lanes `triangles` of the batch; the clip consists of tiles of the buffer.
     #[inline(always)]
-    pub unsafe fn new<T: Simd>(
+    pub unsafe fn new<T: Simd, S: TileOp<T>>(
         t: T,
         lists: &'a mut MaybeUninit<TileRowLists>,
         clip: TileRect,
@@ -123,7 +126,8 @@ impl<'a> TileRows<'a> {
                 unsafe { t.store_i(list.as_mut_ptr().add(T::LANES).cast(), t.i(0)) };
             }
         }
-        Self { lists, todo: triangles, row: 0, listed: 0, next: 0 }
+        const { assert!(S::FIRST_TILE_ROWS <= TILE_ROWS) }
+        Self { lists, todo: triangles, row: 0, listed: 0, next: 0, room: S::FIRST_TILE_ROWS }
     }
 
     /// Lane of the triangle, and tile row in units of a vector's height.
@@ -212,7 +216,8 @@ impl<'a> TileRows<'a> {
     fn list<T: Simd>(&mut self, t: T) {
         let mut listed = 0;
         let mut place = 0;
-        while self.todo != 0 && listed < TILE_ROWS {
+        let room = core::mem::replace(&mut self.room, TILE_ROWS);
+        while self.todo != 0 && listed < room {
             let lane = self.todo.trailing_zeros() as usize;
             // SAFETY: `new` wrote the values of every lane; there is room for a vector after `TILE_ROWS`.
             let rows = unsafe {
@@ -221,7 +226,7 @@ impl<'a> TileRows<'a> {
                 t.store_i(self.lists.place.as_mut_ptr().add(listed).cast(), places);
                 self.lists.rows_of_triangle.get_unchecked(lane).assume_init()
             };
-            let taken = (rows - self.row).min(T::LANES as u32).min((TILE_ROWS - listed) as u32);
+            let taken = (rows - self.row).min(T::LANES as u32).min((room - listed) as u32);
             listed += taken as usize;
             self.row += taken;
             if self.row == rows {
@@ -281,7 +286,23 @@ impl<'a> TileRows<'a> {
         let end = t.min_i(end, t.i(clip.x1 as i32));
         let count = t.max_i(t.select_i(t.gt_i(right, left), t.sub_i(end, first), t.i(0)), t.i(0));
 
-        let nearest = of(&batch.nearest);
+        // No tile of a row of tiles gets a nearer depth than this: what the traversal computes, at the sub-tiles where
+        // the plane is nearest. Every rounding keeps the order, so this holds to the last bit.
+        let (across, limit) = (of(&batch.z_across), of(&batch.z_limit));
+        let sub_column = t.shl::<2>(of_i(&batch.tile_x0));
+        let first_column = t.sub_i(t.shl::<2>(first), sub_column);
+        let last_column = t.add_i(first_column, t.sub_i(t.shl::<2>(count), t.i(1)));
+        let rises = |slope: T::F| t.lt(t.f(0.0), slope);
+        let plane_across = t.mul(across, t.to_f(t.select_i(rises(across), last_column, first_column)));
+        let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
+        let sub_row = t.shl::<1>(rows_below);
+        let (z, down, nearest_corner) = (of(&batch.z), of(&batch.z_down), of(&batch.nearest));
+        let nearest_row = t.select_i(rises(down), t.i(1), t.i(0));
+        let nearest_from = |k: i32| {
+            let row = t.add_i(t.add_i(sub_row, nearest_row), t.i(k));
+            let plane = t.add(t.add(z, t.mul(down, t.to_f(row))), plane_across);
+            t.min(nearest_corner, S::Coverage::clamp(t, plane, limit))
+        };
         let number = t.shl::<PLACE_SHIFT>(t.add_i(t.i(k as i32), t.iota()));
         macro_rules! store {
             ($list:ident, $value:expr) => {
@@ -306,22 +327,20 @@ impl<'a> TileRows<'a> {
             store!(i planes, planes_before::<T, S>(t, in_rows));
             store!(i index, t.shl::<1>(in_rows));
         }
-        store!(across, of(&batch.z_across));
-        store!(limit, of(&batch.z_limit));
-        store!(i sub_column, t.shl::<2>(of_i(&batch.tile_x0)));
+        store!(across, across);
+        store!(limit, limit);
+        store!(i sub_column, sub_column);
         store!(i inner_first, inner_first);
         store!(i inner, inner);
         store!(top, top);
-        // Rows of sub-tiles below the bounds' first tile.
-        let rows_below = t.sub_i(if height::<T>() == 1 { row } else { t.shl::<1>(row) }, of_i(&batch.tile_y0));
-        store!(i sub_row, t.shl::<1>(rows_below));
+        store!(i sub_row, sub_row);
         if height::<T>() == 1 {
-            store!(upper, nearest);
+            store!(upper, nearest_from(0));
         } else {
             let middle = t.add(top, t.f(TILE_HEIGHT as f32));
             let closed = t.f(HIDDEN);
-            let upper = t.select(t.lt(y0, middle), nearest, closed);
-            let lower = t.select(t.le(middle, y1), nearest, closed);
+            let upper = t.select(t.lt(y0, middle), nearest_from(0), closed);
+            let lower = t.select(t.le(middle, y1), nearest_from(2), closed);
             store!(upper, upper);
             store!(lower, lower);
         }
@@ -380,11 +399,9 @@ impl<'a> TileRows<'a> {
             }
         }
         tile_rows += usize::from(before != 0);
-        if T::LANES == MAX_LANES {
-            // Only whole vectors are located.
-            // SAFETY: there is room for a vector after the last tile.
-            unsafe { t.store_i(self.lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.i(0)) };
-        }
+        // Only whole vectors are located, and the traversal looks a few tiles ahead.
+        // SAFETY: there is room for a vector after the last tile.
+        unsafe { t.store_i(self.lists.tiles.named.as_mut_ptr().add(tiles).cast(), t.i(0)) };
         Candidates { tile_rows, tiles }
     }
 }

@@ -29,8 +29,8 @@ struct Rows {
     z: [f32; MAX_LANES],
 }
 
-/// How many tiles ahead memory is prefetched.
-const AHEAD: usize = 6;
+/// How many tiles ahead memory is prefetched: less than a vector, by which the lists are padded.
+pub(super) const AHEAD: usize = 6;
 
 /// Memory for the lists, uninitialised. The order of the fields matters: the reverse order is measurably slower.
 #[repr(C)]
@@ -61,7 +61,7 @@ pub(crate) unsafe fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op:
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Workspace { tile_rows, rows } = unsafe { lists.assume_init_mut() };
     // SAFETY: the caller's contract.
-    let mut tile_rows = unsafe { TileRows::new(t, tile_rows, clip, batch, alive.lanes) };
+    let mut tile_rows = unsafe { TileRows::new::<T, O>(t, tile_rows, clip, batch, alive.lanes) };
     // By value: the compiler must assume that a store into a tile changes anything behind a reference.
     let (first_planes, first_z_min, pitch) = (buffer.planes(), buffer.z_min(), buffer.tiles_w() as usize);
     // SAFETY (of the look-ups below): only tile rows and tiles that `next` found are asked for.
@@ -77,12 +77,10 @@ pub(crate) unsafe fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op:
             }
         }
         for k in 0..found.tiles {
-            if k + AHEAD < found.tiles {
-                // SAFETY: as above.
-                let planes = first_planes.wrapping_byte_add(unsafe { tile_rows.about::<T, O>(k + AHEAD) } as usize);
-                for plane in 0..O::PLANES {
-                    t.prefetch(planes.wrapping_add(plane * BLOCK));
-                }
+            // SAFETY: as above.
+            let planes = first_planes.wrapping_byte_add(unsafe { tile_rows.about::<T, O>(k + AHEAD) } as usize);
+            for plane in 0..O::PLANES {
+                t.prefetch(planes.wrapping_add(plane * BLOCK));
             }
             // SAFETY: as above.
             let tile = unsafe { tile_rows.tile::<T, O>(t, k) };

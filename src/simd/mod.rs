@@ -131,7 +131,7 @@ pub(crate) trait Simd: Copy {
     /// `3 * LANES - 2` words of `index` and each of the records relative to `p` can be read; any alignment. `p` may be
     /// the address that record 0 would have.
     unsafe fn load_records(self, p: *const f32, index: *const u32) -> [Self::F; 3];
-    /// Writes `LANES` records of four floats, the last of which is unspecified.
+    /// Writes `LANES` records of four floats, the third of which is repeated.
     /// # Safety
     /// `p` can be written for `4 * LANES` floats; any alignment.
     unsafe fn store_records(self, p: *mut f32, v: [Self::F; 3]);

@@ -114,8 +114,8 @@ impl Simd for Scalar4 {
     #[inline(always)]
     unsafe fn store_records(self, p: *mut f32, v: [[f32; 4]; 3]) {
         for lane in 0..4 {
-            for k in 0..3 {
-                unsafe { p.add(4 * lane + k).write_unaligned(v[k][lane]) };
+            for k in 0..4 {
+                unsafe { p.add(4 * lane + k).write_unaligned(v[k.min(2)][lane]) };
             }
         }
     }

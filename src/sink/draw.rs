@@ -3,8 +3,8 @@
 use core::marker::PhantomData;
 
 use super::{Memory, TriangleSink, begun_in, tiles_in};
-use crate::buffer::rules::{Rule, with_rule};
-use crate::buffer::{Buffer, ClearState, Region, SUB_TILES, TilePlace, load};
+use crate::buffer::rules::{Inserted, Planes, Rule, with_rule};
+use crate::buffer::{Buffer, Region, SUB_TILES, TilePlace, load};
 use crate::geometry::{Corner, Exact};
 use crate::raster::traverse::{Input, Workspace};
 use crate::raster::{Alive, Batch, HizScope, MAX_TILES, Setup, TileOp, setup, traverse};
@@ -131,6 +131,36 @@ impl<'a, R, const COUNT: bool> Update<'a, R, COUNT> {
         }
     }
 
+    /// Updates a tile and its `z_min`.
+    ///
+    /// # Safety
+    /// As [`TileOp::tile`]; the buffer was made for the rule `R`.
+    #[inline(always)]
+    unsafe fn insert<T: Simd>(
+        &mut self,
+        t: T,
+        at: TilePlace,
+        row: impl Fn() -> u32,
+        insert: impl FnOnce(&mut Planes<T>) -> Inserted<T>,
+    ) where
+        R: Rule,
+    {
+        // SAFETY: the caller's contract.
+        let inserted = unsafe {
+            let mut planes = load::<T, R>(t, self.buffer, at, row);
+            let inserted = insert(&mut planes);
+            R::store(t, at.planes, &planes);
+            t.store_z_min(at.z_min, at.pitch, planes.z0);
+            inserted
+        };
+        // Four counts in the bytes of a word: for each of two tiles, whether any lane was updated, and whether any was
+        // merged.
+        if COUNT {
+            let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
+            self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
+        }
+    }
+
     /// Tiles that were updated, and those in which the reference depth rose; and how many were processed, of a vector's
     /// height.
     #[inline(always)]
@@ -146,7 +176,7 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileOp<T> for Update<'_, R, COUNT> {
     #[inline(always)]
     unsafe fn tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, mut covered: T::I, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
-        let inserted = unsafe {
+        unsafe {
             if self.has_edge_masks
                 && let Some(outside) = self.buffer.edge_mask(at.x, row())
             {
@@ -154,17 +184,7 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileOp<T> for Update<'_, R, COUNT> {
                 let outside = t.load_i(outside);
                 covered = t.select_i(t.eq_i(covered, t.i(0)), t.i(0), t.or(covered, outside));
             }
-            let mut planes = load::<T, R>(t, self.buffer, at, row);
-            let inserted = R::insert(t, &mut planes, covered, depth);
-            R::store(t, at.planes, &planes);
-            t.store_z_min(at.z_min, at.pitch, planes.z0);
-            inserted
-        };
-        // Four counts in the bytes of a word: for each of two tiles, whether any lane was updated, and whether any was
-        // merged.
-        if COUNT {
-            let lanes = t.mask_bits(inserted.live) | t.mask_bits(inserted.merged) << 16;
-            self.counts += (((lanes & 0x7f7f_7f7f) + 0x7f7f_7f7f) | lanes) >> 7 & 0x0101_0101;
+            self.insert(t, at, row, |planes| R::insert(t, planes, covered, depth));
         }
         true
     }
@@ -172,16 +192,8 @@ impl<T: Simd, R: Rule, const COUNT: bool> TileOp<T> for Update<'_, R, COUNT> {
     #[inline(always)]
     unsafe fn whole_tile(&mut self, t: T, at: TilePlace, row: impl Fn() -> u32, depth: T::F) -> bool {
         // SAFETY: the caller's contract; the buffer was made for the rule `R`.
-        unsafe {
-            if ClearState::of::<T>(at).all_drawn() && R::replace(t, at.planes, depth) {
-                t.store_z_min(at.z_min, at.pitch, depth);
-                if COUNT {
-                    self.counts += if T::LANES == SUB_TILES { 0x0001_0001 } else { 0x0101_0101 };
-                }
-                return true;
-            }
-            self.tile(t, at, row, t.i(-1), depth)
-        }
+        unsafe { self.insert(t, at, row, |planes| R::insert_all(t, planes, depth)) };
+        true
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@ pub(crate) mod bin;
 pub(crate) mod draw;
 pub(crate) mod lists;
 pub(crate) mod query;
+mod whole_mesh;
 
 pub(crate) use bin::{Bin, BinBounds, BinnedTriangles};
 pub(crate) use draw::Draw;
@@ -24,6 +25,19 @@ pub(crate) trait TriangleSink {
     type Coverage: Coverage;
     /// Scratch memory on the stack of a call, uninitialised.
     type Memory;
+
+    /// Does one corner of the first triangle decide the call, so that no triangle need be set up?
+    #[inline(always)]
+    fn is_decided_by(&self, _corner: [f32; 3]) -> bool {
+        false
+    }
+
+    /// Is a whole mesh of a few vertices hidden, so that none of its triangles need be submitted? `vertices` are all of
+    /// them, as projected; `corner` is a corner of a triangle that counts.
+    #[inline(always)]
+    fn hides_all<S: Simd>(&mut self, _s: S, _corner: [f32; 3], _vertices: &[[f32; 4]]) -> bool {
+        false
+    }
 
     /// Processes the triangles in `active`. Returns false if no more are needed.
     fn submit<S: Simd>(

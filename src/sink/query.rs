@@ -2,15 +2,18 @@
 
 use core::marker::PhantomData;
 
-use super::{Memory, TriangleSink, tiles_in};
+use super::{Memory, TriangleSink, tiles_in, whole_mesh};
 use crate::CullingResult;
 use crate::buffer::rules::{Rule, with_rule};
-use crate::buffer::{Buffer, SUB_TILES, TilePlace, load};
+use crate::buffer::{Buffer, SUB_TILES, TilePlace, load, pixels};
 use crate::geometry::{Conservative, Corner};
 use crate::raster::traverse::{Input, Workspace};
 use crate::raster::{HizScope, Setup, TileOp, setup, traverse};
 use crate::simd::{Outlined, Simd};
 use crate::statistics::Tally;
+
+/// Tile rows looked at first: what is visible usually shows there.
+const FIRST_LOOK: usize = 2;
 
 /// Compares triangles with a buffer until one may be visible.
 pub(crate) struct Query<'a> {
@@ -25,11 +28,48 @@ impl<'a> Query<'a> {
     pub fn new(buffer: &'a Buffer) -> Self {
         Self { buffer, found: false }
     }
+
+    /// The pixel that contains a point on the screen, in 1/256 pixel.
+    #[inline(always)]
+    fn pixel(&self, [x, y, _]: [f32; 3]) -> Option<(u32, u32)> {
+        let (width, height) = self.buffer.size();
+        let (column, row) = ((x as i32) >> 8, (y as i32) >> 8);
+        let inside = (0..width as i32).contains(&column) && (0..height as i32).contains(&row);
+        inside.then_some((column as u32, row as u32))
+    }
 }
 
 impl TriangleSink for Query<'_> {
     type Coverage = Conservative;
     type Memory = Workspace;
+
+    /// A query covers the pixel that contains a corner, and its depth there is no farther than the corner's. So if that
+    /// pixel shows the corner, the triangle is visible. Statistics count what set-up finds, and so need it.
+    #[inline(always)]
+    fn is_decided_by(&self, corner: [f32; 3]) -> bool {
+        match self.pixel(corner) {
+            // SAFETY: a pixel of the buffer. Nobody is drawing, or the answer is discarded.
+            Some((column, row)) if !self.buffer.statistics() => unsafe {
+                pixels::shows(self.buffer, column, row, corner[2])
+            },
+            _ => false,
+        }
+    }
+
+    /// If every tile of the mesh's bounds hides its nearest vertex, every triangle is hidden, and the one with a corner
+    /// on the screen touches a pixel.
+    #[inline(always)]
+    fn hides_all<S: Simd>(&mut self, s: S, corner: [f32; 3], vertices: &[[f32; 4]]) -> bool {
+        if self.buffer.statistics() || self.pixel(corner).is_none() {
+            return false;
+        }
+        // SAFETY: nobody is drawing, or the answer is discarded.
+        if !unsafe { whole_mesh::is_hidden::<S, Conservative>(s, self.buffer, vertices) } {
+            return false;
+        }
+        self.found = true;
+        true
+    }
 
     #[inline(always)]
     fn submit<S: Simd>(
@@ -42,8 +82,14 @@ impl TriangleSink for Query<'_> {
     ) -> bool {
         const { assert!(S::LANES.is_multiple_of(SUB_TILES)) }
         let scope = HizScope { clip: self.buffer.all_tiles(), coarse: false };
-        let alive = &setup::set_up::<S, Conservative>(setup, scope, corners, active, false, &mut memory.batch);
+        let counts = self.buffer.statistics();
+        let alive = &setup::set_up::<S, Conservative>(setup, scope, corners, active, !counts, &mut memory.batch);
         if alive.rasterized == 0 {
+            return true;
+        }
+        if alive.lanes == 0 && !counts {
+            self.found = true;
+            tally.rasterized += u64::from(alive.rasterized.count_ones());
             return true;
         }
         let (t, buffer, batch, lists) = (setup.s, self.buffer, &memory.batch, &mut memory.own);
@@ -119,6 +165,7 @@ struct Touch;
 
 impl<T: Simd> TileOp<T> for Touch {
     const PLANES: usize = 0;
+    const FIRST_TILE_ROWS: usize = FIRST_LOOK;
     type Coverage = Conservative;
 
     /// All tiles.
@@ -161,6 +208,7 @@ impl<'a, R> Compare<'a, R> {
 
 impl<T: Simd, R: Rule> TileOp<T> for Compare<'_, R> {
     const PLANES: usize = R::PLANES;
+    const FIRST_TILE_ROWS: usize = FIRST_LOOK;
     type Coverage = Conservative;
 
     #[inline(always)]

@@ -11,7 +11,7 @@
 
 use super::scratch::{CHUNK_TRIANGLES, CHUNK_VERTICES, Scratch};
 use super::vertex_reader::VertexReader;
-use crate::geometry::Camera;
+use crate::geometry::{Camera, Coverage};
 use crate::simd::{Job, MAX_LANES, Simd};
 
 /// The least and the largest of a non-empty set of indices.
@@ -65,6 +65,10 @@ pub(super) struct Chunk {
     /// The first triangle after it.
     pub end: usize,
     pub numbering: Numbering,
+    /// Number of vertices, if they are consecutive in the scratch and in the mesh's order; else 0.
+    pub vertices: usize,
+    /// All of its vertices are outside the same side of the view.
+    pub outside: bool,
     /// Where the next chunk's vertices are if they follow this one's, as they usually do, and how many of their cache
     /// lines to prefetch with each vector of triangles.
     next_vertices: *const u8,
@@ -81,7 +85,14 @@ fn lines(vertices: usize, stride: usize, vectors: usize) -> usize {
 }
 
 impl Chunk {
-    pub const NONE: Self = Self { end: 0, numbering: Numbering::From(0), next_vertices: core::ptr::null(), lines: 0 };
+    pub const NONE: Self = Self {
+        end: 0,
+        numbering: Numbering::From(0),
+        vertices: 0,
+        outside: false,
+        next_vertices: core::ptr::null(),
+        lines: 0,
+    };
 
     /// Prefetches a part of the next chunk's data with each vector of triangles; `position` is the first triangle of
     /// the vector.
@@ -106,7 +117,7 @@ impl Chunk {
 /// # Safety
 /// The vertices can be read; `position` is below the number of triangles.
 #[inline(always)]
-pub(super) unsafe fn project<S: Simd>(
+pub(super) unsafe fn project<S: Simd, C: Coverage>(
     s: S,
     camera: &Camera,
     reader: &VertexReader<S>,
@@ -130,11 +141,11 @@ pub(super) unsafe fn project<S: Simd>(
     if ((largest - least) as usize) < CHUNK_VERTICES && dense(least, largest, count) {
         let vertices = (largest - least) as usize + 1;
         // SAFETY: the contract of `Mesh::new`: every vertex from the lowest to the highest index can be read.
-        unsafe { reader.dense(camera, least, vertices, scratch) };
+        let outside = unsafe { reader.dense::<C>(camera, least, vertices, scratch) };
         let (stride, numbering) = (reader.stride(), Numbering::From(least));
         let next_vertices = reader.at(largest).wrapping_add(stride);
         let lines = lines(vertices, stride, count.div_ceil(S::LANES));
-        return Chunk { end: position + count, numbering, next_vertices, lines };
+        return Chunk { end: position + count, numbering, vertices, outside, next_vertices, lines };
     }
     // SAFETY: the caller's contract.
     let count = unsafe {

@@ -17,6 +17,9 @@ use crate::vertices::VertexSource;
 /// If more triangles than this are queued, there may be no room for another packet's.
 const FULL: usize = CAPACITY - MAX_LANES * clip::MAX_TRIANGLES;
 
+/// A mesh of so few vertices may be looked at as a whole first: a box, a simple hull.
+const FEW_VERTICES: usize = 24;
+
 /// The triangles of a call, three indices each; their vertices can be read.
 #[derive(Clone, Copy)]
 pub(crate) struct Mesh<'a> {
@@ -91,7 +94,7 @@ impl TriangleSource for MeshTriangles<'_> {
         let screen = stream.setup.buffer.size();
         let mut memory = Scratch::uninit();
         let scratch = Scratch::of(&mut memory);
-        let mut in_view = false;
+        let (mut in_view, mut asked) = (false, false);
         let triangles = mesh.triangles.len() / 3;
         stream.tally.processed = triangles as u64;
         let (mut position, mut chunk) = (0, Chunk::NONE);
@@ -99,7 +102,12 @@ impl TriangleSource for MeshTriangles<'_> {
         while position < triangles && !stream.unprojectable {
             if position == chunk.end {
                 // SAFETY: a mesh's vertices can be read.
-                chunk = unsafe { chunk::project(s, camera, &reader, mesh.triangles, position, scratch) };
+                chunk =
+                    unsafe { chunk::project::<S, K::Coverage>(s, camera, &reader, mesh.triangles, position, scratch) };
+                if chunk.outside {
+                    position = chunk.end;
+                    continue;
+                }
             }
             chunk.prefetch_next(s, mesh.triangles, position);
             let count = S::LANES.min(chunk.end - position);
@@ -108,6 +116,20 @@ impl TriangleSource for MeshTriangles<'_> {
             let culled = packet.cull::<K::Coverage>(s, screen, camera, facing);
             in_view |= culled.in_view;
             let kept = s.mask_bits(culled.kept);
+            if kept != 0 && !asked {
+                asked = true;
+                // SAFETY: the lane is one of the vector's.
+                let corner = unsafe { packet.nearest_corner(s, kept.trailing_zeros() as usize) };
+                if stream.sink.is_decided_by(corner) {
+                    return Err(Stopped);
+                }
+                let few = (1..=FEW_VERTICES).contains(&chunk.vertices) && chunk.end == triangles;
+                // SAFETY: the chunk's vertices were written.
+                if few && stream.sink.hides_all(s, corner, unsafe { scratch.first(chunk.vertices) }) {
+                    stream.in_view = true;
+                    return Ok(());
+                }
+            }
             if culled.irregular == 0 {
                 if kept != 0 && triangles <= S::LANES {
                     *direct = Some((packet.corners, culled.kept));

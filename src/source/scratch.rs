@@ -78,6 +78,17 @@ impl Scratch {
         self.vertices.as_mut_ptr().wrapping_add(local).cast()
     }
 
+    /// The first `n` vertices.
+    ///
+    /// # Safety
+    /// They were written.
+    #[inline(always)]
+    pub unsafe fn first(&self, n: usize) -> &[[f32; 4]] {
+        let vertices = &self.vertices[..n];
+        // SAFETY: the caller's contract.
+        unsafe { core::slice::from_raw_parts(vertices.as_ptr().cast(), n) }
+    }
+
     /// The local numbers of the first `n` corners.
     ///
     /// # Safety

@@ -2,8 +2,9 @@
 
 use super::scratch::Scratch;
 use crate::VertexLayout;
-use crate::geometry::project::MatrixRows;
-use crate::geometry::{Camera, project};
+use crate::geometry::extent::Extent;
+use crate::geometry::project::{MatrixRows, project_or_mark};
+use crate::geometry::{Camera, Coverage, project};
 use crate::simd::{MAX_LANES, Simd};
 use crate::vertices::VertexSource;
 
@@ -150,31 +151,35 @@ impl<S: Simd> VertexReader<S> {
         }
     }
 
-    /// Projects `count` vertices starting at `first` into the scratch.
+    /// Projects `count` vertices starting at `first` into the scratch. Says whether all of them are outside the same
+    /// side of the view; of fewer than a vector it does not try.
     ///
     /// # Safety
     /// They can be read; `count` is at least 1 and at most the chunk's size.
     #[inline(always)]
-    pub unsafe fn dense(&self, camera: &Camera, first: u32, count: usize, scratch: &mut Scratch) {
+    pub unsafe fn dense<C: Coverage>(&self, camera: &Camera, first: u32, count: usize, scratch: &mut Scratch) -> bool {
         let s = self.s;
         if count < S::LANES && self.packing != Packing::Other {
             // SAFETY: the caller's contract.
             let [x, y, z] = unsafe { project(s, camera, self.load_first(first, count)) };
             // SAFETY: the scratch has room for a vector.
-            return unsafe { s.store_records(scratch.vertex(0), [x, y, z]) };
+            unsafe { s.store_records(scratch.vertex(0), [x, y, z]) };
+            return false;
         }
         if count < S::LANES {
             let last = count as u32 - 1;
             let indices: [u32; MAX_LANES] = core::array::from_fn(|lane| first + (lane as u32).min(last));
             // SAFETY: the caller's contract; the scratch has room for a vector.
-            return unsafe { self.each(camera, indices, 0, scratch) };
+            unsafe { self.each(camera, indices, 0, scratch) };
+            return false;
         }
+        let mut extent = Extent::new(s);
         let mut local = 0;
         loop {
             // SAFETY: the caller's contract; local + LANES <= count.
             unsafe {
-                let [x, y, z] = project(s, camera, self.load(first + local as u32, local + S::LANES < count));
-                s.store_records(scratch.vertex(local), [x, y, z]);
+                let clip = self.load(first + local as u32, local + S::LANES < count);
+                s.store_records(scratch.vertex(local), extent.add(s, project_or_mark(s, camera, clip)));
             }
             local += S::LANES;
             if local >= count {
@@ -183,6 +188,7 @@ impl<S: Simd> VertexReader<S> {
             // The last vector ends with the last vertex and repeats some earlier ones.
             local = local.min(count - S::LANES);
         }
+        extent.is_outside::<C>(s, camera)
     }
 
     /// Projects vertices one index at a time, for meshes with scattered indices.

@@ -7,14 +7,6 @@ use crate::simd::Simd;
 
 pub(crate) struct Accurate;
 
-impl Accurate {
-    /// The depth of the empty layer left behind by a full one.
-    #[inline(always)]
-    fn left_behind<S: Simd>(_: S, depth: S::F) -> S::F {
-        depth
-    }
-}
-
 impl Rule for Accurate {
     two_plane_layout!();
 

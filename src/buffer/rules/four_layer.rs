@@ -105,24 +105,22 @@ impl Rule for FourLayer {
         Inserted { live: s.lt(z0, t), merged: s.lt(z0, risen) }
     }
 
+    /// As for three layers.
     #[inline(always)]
-    unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
-        // SAFETY: the caller's contract.
-        unsafe {
-            // No other depth is nearer than the near layer's.
-            let z_near = s.load_f(p.add(BLOCK).cast());
-            if !s.all(s.lt(z_near, depth)) {
-                return false;
-            }
-            // The result that `insert` would give: every layer moves back by one, and nothing remains hidden behind any
-            // of them.
-            let z_mid = s.load_f(p.add(2 * BLOCK).cast());
-            let full = s.i(-1);
-            let planes =
-                Planes { z0: depth, z_near: depth, z_mid: z_near, z_far: z_mid, near: full, mid: full, far: full };
-            Self::store(s, p, &planes);
-            true
-        }
+    fn insert_all<S: Simd>(s: S, planes: &mut Planes<S>, t: S::F) -> Inserted<S> {
+        let Planes { z0, z_near, z_mid, z_far, near, mid, far } = *planes;
+        let full = s.i(-1);
+        *planes = Planes {
+            z0: s.max_positive(z0, t),
+            z_near: s.max_positive(z_near, t),
+            near: s.select_i(s.lt(z_near, t), full, near),
+            z_mid: s.max_positive(z_mid, s.min_positive(z_near, t)),
+            mid: s.select_i(s.lt(z_mid, t), full, mid),
+            z_far: s.max_positive(z_far, s.min_positive(z_mid, t)),
+            far: s.select_i(s.lt(z_far, t), full, far),
+        };
+        let nearer = s.lt(z0, t);
+        Inserted { live: nearer, merged: nearer }
     }
 
     #[inline(always)]

@@ -91,12 +91,11 @@ pub(crate) trait Rule {
     /// was drawn.
     fn insert<S: Simd>(s: S, planes: &mut Planes<S>, coverage: S::I, depth: S::F) -> Inserted<S>;
 
-    /// Inserts all pixels at `depth` without reading the whole tile, if that depth is nearer than everything in it.
-    /// Returns false, having done nothing, if it is not.
-    ///
-    /// # Safety
-    /// As [`Self::store`].
-    unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool;
+    /// As [`Self::insert`] with all pixels covered, for which fewer operations suffice.
+    #[inline(always)]
+    fn insert_all<S: Simd>(s: S, planes: &mut Planes<S>, depth: S::F) -> Inserted<S> {
+        Self::insert(s, planes, s.i(-1), depth)
+    }
 
     /// Lanes in which anything at `depth` or farther, in the pixels `touched`, is certainly hidden. Lanes that touch no
     /// pixel count as hidden.

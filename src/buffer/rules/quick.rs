@@ -7,14 +7,6 @@ use crate::simd::Simd;
 
 pub(crate) struct Quick;
 
-impl Quick {
-    /// The depth of the empty layer left behind by a full one.
-    #[inline(always)]
-    fn left_behind<S: Simd>(s: S, _: S::F) -> S::F {
-        s.f(0.0)
-    }
-}
-
 impl Rule for Quick {
     two_plane_layout!();
 

@@ -56,12 +56,20 @@ impl<R: Rule> Job for Sequence<'_, R> {
                     let (mask, depth) =
                         (s.load_i(step.mask.as_ptr().add(first)), s.load_f(step.depth.as_ptr().add(first)));
                     let mut planes = R::load(s, p);
-                    let mut replaced = Memory(memory.0);
+                    if s.all(s.eq_i(mask, s.i(-1))) {
+                        let (mut all, mut other) = (Memory(memory.0), Memory(memory.0));
+                        let mut with_all = R::load(s, p);
+                        let seen = R::insert_all(s, &mut with_all, depth);
+                        R::store(s, all.0.as_mut_ptr().add(first), &with_all);
+                        let mut with_mask = R::load(s, p);
+                        let expected = R::insert(s, &mut with_mask, mask, depth);
+                        R::store(s, other.0.as_mut_ptr().add(first), &with_mask);
+                        assert_eq!(all.0[..R::PLANES * BLOCK], other.0[..R::PLANES * BLOCK], "insert_all is insert");
+                        assert_eq!(s.mask_bits(seen.live), s.mask_bits(expected.live));
+                        assert_eq!(s.mask_bits(seen.merged), s.mask_bits(expected.merged));
+                    }
                     let inserted = R::insert(s, &mut planes, mask, depth);
                     R::store(s, p, &planes);
-                    if s.all(s.eq_i(mask, s.i(-1))) && R::replace(s, replaced.0.as_mut_ptr().add(first), depth) {
-                        assert_eq!(replaced.0[..R::PLANES * BLOCK], memory.0[..R::PLANES * BLOCK], "replace is insert");
-                    }
                     let (touched, asked) =
                         (s.load_i(step.touched.as_ptr().add(first)), s.load_f(step.asked.as_ptr().add(first)));
                     let planes = R::load(s, memory.0.as_ptr().add(first));
@@ -203,7 +211,7 @@ impl Model {
         let least = (0..last).reduce(|a, b| if loss(b) < loss(a) { b } else { a }).unwrap_or(last);
         let dropped = if loss(last) <= loss(least).min(self.reference) {
             last
-        } else if self.layers.len() == 3 && loss(1) > 2.0 * self.layers[2].1 && loss(0) <= 3.0 * loss(1) {
+        } else if self.layers.len() == 3 && self.layers[1].1 > 3.0 * self.layers[2].1 && loss(0) <= 3.0 * loss(1) {
             // Only with three layers.
             0
         } else {

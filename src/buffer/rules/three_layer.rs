@@ -76,8 +76,9 @@ impl Rule for ThreeLayer {
         let drop_c = s.or_m(full_c, s.le(loss_c, s.min(s.min(loss_a, z0), loss_b)));
         // Dropping B leaves its pixels at C's depth: where that is less than a third of B's, A goes unless its loss is
         // three times as large.
-        let far_behind = s.lt(s.add(z_c, z_c), loss_b);
-        let drop_a = s.and_not_m(drop_c, s.le(loss_a, s.select(far_behind, s.mul(loss_b, s.f(3.0)), loss_b)));
+        let far_behind = s.lt(s.mul(z_c, s.f(3.0)), z_b);
+        let scaled_b = s.mul(loss_b, s.select(far_behind, s.f(3.0), s.f(1.0)));
+        let drop_a = s.and_not_m(drop_c, s.le(loss_a, scaled_b));
         // The nearest full layer: if a layer is full, so are those behind it.
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
@@ -93,22 +94,22 @@ impl Rule for ThreeLayer {
         Inserted { live: s.lt(z0, t), merged: s.lt(z0, risen) }
     }
 
+    /// The triangle is one of the three candidate layers, and what is behind it is full, so the farthest always becomes
+    /// the reference.
     #[inline(always)]
-    unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
-        // SAFETY: the caller's contract.
-        unsafe {
-            // No other depth is nearer than the near layer's.
-            let z_near = s.load_f(p.add(BLOCK).cast());
-            if !s.all(s.lt(z_near, depth)) {
-                return false;
-            }
-            // The result that `insert` would give: the near layer becomes the far one, and nothing remains hidden
-            // behind it.
-            let full = s.i(-1);
-            let planes = Planes { z0: depth, z_near: depth, z_far: z_near, near: full, far: full, ..Self::empty(s) };
-            Self::store(s, p, &planes);
-            true
-        }
+    fn insert_all<S: Simd>(s: S, planes: &mut Planes<S>, t: S::F) -> Inserted<S> {
+        let Planes { z0, z_near, z_far, near, far, .. } = *planes;
+        let full = s.i(-1);
+        *planes = Planes {
+            z0: s.max_positive(z0, t),
+            z_near: s.max_positive(z_near, t),
+            near: s.select_i(s.lt(z_near, t), full, near),
+            z_far: s.max_positive(z_far, s.min_positive(z_near, t)),
+            far: s.select_i(s.lt(z_far, t), full, far),
+            ..*planes
+        };
+        let nearer = s.lt(z0, t);
+        Inserted { live: nearer, merged: nearer }
     }
 
     #[inline(always)]

@@ -32,21 +32,6 @@ macro_rules! two_plane_layout {
         }
 
         #[inline(always)]
-        unsafe fn replace<S: Simd>(s: S, p: *mut u32, depth: S::F) -> bool {
-            // SAFETY: the caller's contract.
-            unsafe {
-                let (z0, z_near) = (s.load_f(p.cast()), s.load_f(p.add(BLOCK).cast()));
-                if !s.all(s.and_m(s.lt(z0, depth), s.lt(z_near, depth))) {
-                    return false;
-                }
-                // The result that the rule would give: the reference covers everything, and the layer is empty.
-                let planes = Planes { z0: depth, z_near: Self::left_behind(s, depth), ..Self::empty(s) };
-                Self::store(s, p, &planes);
-                true
-            }
-        }
-
-        #[inline(always)]
         fn hides<S: Simd>(s: S, planes: &Planes<S>, touched: S::I, depth: S::F) -> S::M {
             let reference = $crate::buffer::rules::behind_reference(s, planes, touched, depth);
             s.or_m(reference, $crate::buffer::rules::behind_layer(s, touched, depth, planes.near, planes.z_near))

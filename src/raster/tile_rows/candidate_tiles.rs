@@ -42,13 +42,14 @@ pub(crate) struct Tile<T: Simd> {
 }
 
 impl TileRows<'_> {
-    /// Address of the planes of the `k`th candidate tile, as a byte offset.
+    /// Address of the planes of the `k`th candidate tile, as a byte offset; past the last one, that of some tile.
     ///
     /// # Safety
-    /// `next` counted the tile.
+    /// `next` counted the tile, or the one [`AHEAD`](crate::raster::traverse::AHEAD) before it.
     #[inline(always)]
     pub unsafe fn about<T: Simd, S: TileOp<T>>(&self, k: usize) -> u32 {
-        // SAFETY: the caller's contract; with sixteen lanes, the counted tiles were located.
+        // SAFETY: the caller's contract: the lists are padded by a vector. With sixteen lanes, the counted tiles were
+        // located.
         unsafe {
             if T::LANES == MAX_LANES {
                 return self.lists.tiles.located.get_unchecked(k).assume_init();
@@ -113,6 +114,8 @@ impl TileRows<'_> {
     #[inline(always)]
     pub(super) unsafe fn locate<T: Simd, S: TileOp<T>>(&mut self, t: T, tiles: usize) {
         let lists = &mut *self.lists;
+        // SAFETY: there is room for a vector after the last tile.
+        unsafe { t.store_i(lists.tiles.located.as_mut_ptr().add(tiles).cast(), t.i(0)) };
         let mut k = 0;
         while k < tiles {
             // SAFETY: the caller's contract; a padding vector was written after them; all 32 words of
