@@ -350,8 +350,8 @@ public:
     }
 
     /**
-     * Merges another buffer into this one: afterwards this one hides what either hid, and never more. A buffer of another
-     * size or y direction is refused.
+     * Merges another buffer into this one: afterwards this one hides what either hid, except for what its few depths
+     * cannot represent, and never more. A buffer of another size or y direction is refused.
      */
     void MergeBuffer(MaskedOcclusionCulling *BufferB)
     {

@@ -192,8 +192,8 @@ impl MaskedOcclusionCulling {
         self.recorder.clear_buffer();
     }
 
-    /// Merges `other` into this buffer, which afterwards hides, conservatively, what either one hid. The two may differ
-    /// in instruction set and update rule.
+    /// Merges `other` into this buffer: afterwards this one hides what either hid, except for what its few depths cannot
+    /// represent, and never more. The two may differ in instruction set and update rule.
     ///
     /// # Errors
     /// [`Error::SizeMismatch`]: nothing is changed.

@@ -46,21 +46,30 @@ impl<S: Simd> Extent<S> {
     /// Are all of them outside the same side? Some that are may be missed.
     #[inline(always)]
     pub fn is_outside<C: Coverage>(&self, s: S, camera: &Camera) -> bool {
+        // Plain loops: the compiler does not always inline closures that take vectors.
         if self.regular {
+            if self.clipping {
+                return false;
+            }
             let begin = s.f(-C::SCREEN_SLACK);
-            let beyond = |k: usize, half: f32| {
+            for (k, half) in [camera.half_width, camera.half_height].into_iter().enumerate() {
                 let end = s.f(2.0 * half + C::SCREEN_SLACK);
-                s.all(s.le(self.max[k], begin)) || s.all(s.le(end, self.min[k]))
-            };
-            !self.clipping && (beyond(0, camera.half_width) || beyond(1, camera.half_height))
-        } else {
-            let side = |plane: u32| {
-                let bit = s.i(plane as i32);
-                s.all(s.eq_i(s.and(self.shared, bit), bit))
-            };
-            let near = !(C::COUNTS_UNPROJECTABLE && camera.near_is_raised) && side(outcode::NEAR);
-            self.clipping && (near || (1..5).any(|k| side(1 << k)))
+                if s.all(s.le(self.max[k], begin)) || s.all(s.le(end, self.min[k])) {
+                    return true;
+                }
+            }
+            return false;
         }
+        let keep_near = C::COUNTS_UNPROJECTABLE && camera.near_is_raised;
+        let mut plane = if keep_near { 2 * outcode::NEAR } else { outcode::NEAR };
+        while self.clipping && plane <= outcode::ALL {
+            let bit = s.i(plane as i32);
+            if s.all(s.eq_i(s.and(self.shared, bit), bit)) {
+                return true;
+            }
+            plane *= 2;
+        }
+        false
     }
 }
 

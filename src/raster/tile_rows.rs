@@ -298,11 +298,14 @@ impl<'a> TileRows<'a> {
         let sub_row = t.shl::<1>(rows_below);
         let (z, down, nearest_corner) = (of(&batch.z), of(&batch.z_down), of(&batch.nearest));
         let nearest_row = t.select_i(rises(down), t.i(1), t.i(0));
-        let nearest_from = |k: i32| {
-            let row = t.add_i(t.add_i(sub_row, nearest_row), t.i(k));
-            let plane = t.add(t.add(z, t.mul(down, t.to_f(row))), plane_across);
-            t.min(nearest_corner, S::Coverage::clamp(t, plane, limit))
-        };
+        // A macro: a closure that is called twice is not always inlined.
+        macro_rules! nearest_from {
+            ($k:expr) => {{
+                let row = t.add_i(t.add_i(sub_row, nearest_row), t.i($k));
+                let plane = t.add(t.add(z, t.mul(down, t.to_f(row))), plane_across);
+                t.min(nearest_corner, S::Coverage::clamp(t, plane, limit))
+            }};
+        }
         let number = t.shl::<PLACE_SHIFT>(t.add_i(t.i(k as i32), t.iota()));
         macro_rules! store {
             ($list:ident, $value:expr) => {
@@ -335,12 +338,12 @@ impl<'a> TileRows<'a> {
         store!(top, top);
         store!(i sub_row, sub_row);
         if height::<T>() == 1 {
-            store!(upper, nearest_from(0));
+            store!(upper, nearest_from!(0));
         } else {
             let middle = t.add(top, t.f(TILE_HEIGHT as f32));
             let closed = t.f(HIDDEN);
-            let upper = t.select(t.lt(y0, middle), nearest_from(0), closed);
-            let lower = t.select(t.le(middle, y1), nearest_from(2), closed);
+            let upper = t.select(t.lt(y0, middle), nearest_from!(0), closed);
+            let lower = t.select(t.le(middle, y1), nearest_from!(2), closed);
             store!(upper, upper);
             store!(lower, lower);
         }

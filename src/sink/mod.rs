@@ -26,6 +26,9 @@ pub(crate) trait TriangleSink {
     /// Scratch memory on the stack of a call, uninitialised.
     type Memory;
 
+    /// Whether it looks at a corner and at a whole mesh first: at what the next two functions are given.
+    const LOOKS_FIRST: bool = false;
+
     /// Does one corner of the first triangle decide the call, so that no triangle need be set up?
     #[inline(always)]
     fn is_decided_by(&self, _corner: [f32; 3]) -> bool {

@@ -42,6 +42,7 @@ impl<'a> Query<'a> {
 impl TriangleSink for Query<'_> {
     type Coverage = Conservative;
     type Memory = Workspace;
+    const LOOKS_FIRST: bool = true;
 
     /// A query covers the pixel that contains a corner, and its depth there is no farther than the corner's. So if that
     /// pixel shows the corner, the triangle is visible. Statistics count what set-up finds, and so need it.

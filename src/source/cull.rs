@@ -86,16 +86,17 @@ impl<S: Simd> Packet<S> {
     pub unsafe fn nearest_corner(&self, s: S, lane: usize) -> [f32; 3] {
         let [a, b, c] = self.corners;
         let b_nearer = s.lt(a[2], b[2]);
-        let ab = [0, 1, 2].map(|k| s.select(b_nearer, b[k], a[k]));
-        let c_nearer = s.lt(ab[2], c[2]);
-        [0, 1, 2].map(|k| {
+        let c_nearer = s.lt(s.max(a[2], b[2]), c[2]);
+        let mut corner = [0.0; 3];
+        for k in 0..3 {
             let mut lanes = [0.0_f32; MAX_LANES];
             // SAFETY: the array holds a vector; the caller's contract.
             unsafe {
-                s.store_f(lanes.as_mut_ptr(), s.select(c_nearer, c[k], ab[k]));
-                *lanes.get_unchecked(lane)
+                s.store_f(lanes.as_mut_ptr(), s.select(c_nearer, c[k], s.select(b_nearer, b[k], a[k])));
+                corner[k] = *lanes.get_unchecked(lane);
             }
-        })
+        }
+        corner
     }
 
     #[inline(always)]

@@ -116,7 +116,7 @@ impl TriangleSource for MeshTriangles<'_> {
             let culled = packet.cull::<K::Coverage>(s, screen, camera, facing);
             in_view |= culled.in_view;
             let kept = s.mask_bits(culled.kept);
-            if kept != 0 && !asked {
+            if K::LOOKS_FIRST && kept != 0 && !asked {
                 asked = true;
                 // SAFETY: the lane is one of the vector's.
                 let corner = unsafe { packet.nearest_corner(s, kept.trailing_zeros() as usize) };

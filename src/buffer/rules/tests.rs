@@ -211,7 +211,7 @@ impl Model {
         let least = (0..last).reduce(|a, b| if loss(b) < loss(a) { b } else { a }).unwrap_or(last);
         let dropped = if loss(last) <= loss(least).min(self.reference) {
             last
-        } else if self.layers.len() == 3 && self.layers[1].1 > 3.0 * self.layers[2].1 && loss(0) <= 3.0 * loss(1) {
+        } else if self.layers.len() == 3 && loss(0).min(self.layers[0].1 * (1.0 / 3.0)) <= loss(1) {
             // Only with three layers.
             0
         } else {

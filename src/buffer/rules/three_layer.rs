@@ -74,11 +74,10 @@ impl Rule for ThreeLayer {
         let full = s.i(-1);
         let full_c = s.eq_i(mask_c, full);
         let drop_c = s.or_m(full_c, s.le(loss_c, s.min(s.min(loss_a, z0), loss_b)));
-        // Dropping B leaves its pixels at C's depth: where that is less than a third of B's, A goes unless its loss is
-        // three times as large.
-        let far_behind = s.lt(s.mul(z_c, s.f(3.0)), z_b);
-        let scaled_b = s.mul(loss_b, s.select(far_behind, s.f(3.0), s.f(1.0)));
-        let drop_a = s.and_not_m(drop_c, s.le(loss_a, scaled_b));
+        // Against B, the loss of A counts as at most a third of A's depth: where B is far in front of C, its pixels would
+        // lose most of theirs.
+        let limited_a = s.min(loss_a, s.mul(z_a, s.f(1.0 / 3.0)));
+        let drop_a = s.and_not_m(drop_c, s.le(limited_a, loss_b));
         // The nearest full layer: if a layer is full, so are those behind it.
         let nearest_full = s.select(s.eq_i(mask_b, full), z_b, z_c);
         let nearest_full = s.select(s.eq_i(mask_a, full), z_a, nearest_full);
