@@ -224,8 +224,8 @@ enum MOC_Status
      */
     MOC_STATUS_INVALID_RECORDING = 13,
     /**
-     * A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or it is already
-     * recording.
+     * A pool has work in flight for the object: call MOC_Flush first. Or the object belongs to another pool, or
+     * it is already recording.
      */
     MOC_STATUS_BUSY = 14,
 };
@@ -500,10 +500,10 @@ typedef struct MOC_Threadpool MOC_Threadpool;
  * Receives a message about a call that was refused, or that probably did not do what was intended: `message` names the
  * function, the argument and the reason, as in "MOC_RenderTriangles: no buffer: call MOC_SetResolution first".
  *
- * `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return, MOC_STATUS_OK if it
- * was not refused. `message` is in English and valid only during the callback. It is called on the thread that made the call,
- * possibly on several threads concurrently, and while the library holds no lock of its own. It may call the library; refusals
- * of those calls are not reported. It must not throw or longjmp.
+ * `user` is that of MOC_SetMessageCallback. `status` is the MOC_Status that the call is about to return,
+ * MOC_STATUS_OK if it was not refused. `message` is in English and valid only during the callback. It is called on
+ * the thread that made the call, possibly on several threads concurrently, and while the library holds no lock of
+ * its own. It may call the library; refusals of those calls are not reported. It must not throw or longjmp.
  */
 typedef void (*MOC_MessageCallback)(void *user, int32_t status, const char *message);
 
@@ -521,8 +521,8 @@ typedef void *(*MOC_AlignedAlloc)(size_t alignment, size_t size);
 typedef void (*MOC_AlignedFree)(void *ptr);
 
 /**
- * Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may enter the
- * library, so this function catches it and returns null. It is called wherever `alloc` would be.
+ * Calls `alloc(alignment, size)` and returns its result, for languages whose allocators throw: no exception may
+ * enter the library, so this function catches it and returns null. It is called wherever `alloc` would be.
  */
 typedef void *(*MOC_CallAlloc)(MOC_AlignedAlloc alloc, size_t alignment, size_t size);
 
@@ -760,8 +760,8 @@ typedef struct MOC_Statistics {
 } MOC_Statistics;
 
 /**
- * Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number, counted from
- * 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
+ * Called on each worker thread of a pool when it starts, with the `user` of the settings and the thread's number,
+ * counted from 0: to set its priority or affinity, or to register it with a profiler. It must not throw.
  */
 typedef void (*MOC_ThreadStart)(void *user, uint32_t number);
 
@@ -774,13 +774,14 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t size;
     /**
-     * Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the caller's, but at
-     * least one. 0: the work is done by the calls that flush or submit, and by MOC_ThreadpoolWorkOnce.
+     * Worker threads of the pool, 0 to 1024. Fewer are started if there are fewer processors besides the
+     * caller's, but at least one. 0: the work is done by the calls that flush or submit, and by
+     * MOC_ThreadpoolWorkOnce.
      */
     uint32_t threads;
     /**
-     * Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than 128x64 pixels,
-     * and the screen is divided into rows first.
+     * Columns and rows of bins on the screen; 0: 4. There are at most four bins per thread, none smaller than
+     * 128x64 pixels, and the screen is divided into rows first.
      */
     uint32_t bins_w;
     /**
@@ -788,8 +789,8 @@ typedef struct MOC_ThreadpoolSettings {
      */
     uint32_t bins_h;
     /**
-     * How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into batches of at
-     * most half as many, so a larger number makes them cheaper.
+     * How many calls' arrays may still be read when a draw call returns; 0: 32. Small calls are gathered into
+     * batches of at most half as many, so a larger number makes them cheaper.
      */
     uint32_t max_jobs;
     /**
@@ -890,23 +891,23 @@ uint32_t MOC_GetAbiVersion(void);
 const char *MOC_StatusText(int32_t status);
 
 /**
- * From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with `user` as
- * its first argument; null (the default): none. There is one callback for the whole process.
+ * From now on, calls that are refused, on any thread and for any object or pool, are reported to `callback`, with
+ * `user` as its first argument; null (the default): none. There is one callback for the whole process.
  *
  * When it returns, another thread may still be running the previous callback.
  *
  * Errors: none.
  *
  * Required:
- * `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is replaced and
- * every call that began before that has returned.
+ * `callback` is null, or meets the requirements of MOC_MessageCallback with `user` on any thread until it is
+ * replaced and every call that began before that has returned.
  */
 MOC_Status MOC_SetMessageCallback(MOC_MessageCallback callback,
                                   void *user);
 
 /**
- * The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus, MOC_StatusText and
- * MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
+ * The MOC_Status of the calling thread's last call, for programs that did not keep it. MOC_GetLastStatus,
+ * MOC_StatusText and MOC_GetAbiVersion do not count as calls. MOC_STATUS_OK before the first call.
  */
 int32_t MOC_GetLastStatus(void);
 
@@ -1039,8 +1040,8 @@ MOC_Status MOC_GetImplementation(const MaskedOcclusionCulling *moc, int32_t *out
 MOC_Status MOC_GetUpdateRule(const MaskedOcclusionCulling *moc, int32_t *out);
 
 /**
- * Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may be used
- * directly as long as no thread calls the pool.
+ * Waits until the pool that draws into the object, if any, has drawn everything submitted: afterwards the object may
+ * be used directly as long as no thread calls the pool.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1057,8 +1058,8 @@ MOC_Status MOC_Flush(const MaskedOcclusionCulling *moc);
  * Errors: MOC_STATUS_NULL_POINTER.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free` are null
- * or can be written.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `alloc` and `free`
+ * are null or can be written.
  */
 MOC_Status MOC_GetAllocFreeCallback(const MaskedOcclusionCulling *moc,
                                     MOC_AlignedAlloc *alloc,
@@ -1080,8 +1081,8 @@ MOC_Status MOC_ClearBuffer(MaskedOcclusionCulling *moc);
  * few depths cannot represent, and never more. `other` is not changed. The two must have the same resolution and
  * MOC_YAxis; they may differ in instruction set and update rule. Merging an object with itself changes nothing.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is drawing into
- * either.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_SIZE_MISMATCH, MOC_STATUS_BUSY while a pool is
+ * drawing into either.
  *
  * Required:
  * Both are null or from MOC_Create and not destroyed. No other thread uses `moc` meanwhile, and none
@@ -1097,8 +1098,8 @@ MOC_Status MOC_MergeBuffer(MaskedOcclusionCulling *moc,
  * Errors: as MOC_MergeBuffer, and MOC_STATUS_NULL_POINTER for a null in the array. On an error nothing is merged.
  *
  * Required:
- * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed. No other
- * thread uses `moc` meanwhile, and none changes the others.
+ * `others` is null or can be read for `count` pointers. All objects are null or from MOC_Create and not destroyed.
+ * No other thread uses `moc` meanwhile, and none changes the others.
  */
 MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
                             const MaskedOcclusionCulling *const *others,
@@ -1124,9 +1125,9 @@ MOC_Status MOC_MergeBuffers(MaskedOcclusionCulling *moc,
  * Triangles with a NaN, an infinite coordinate, or a corner farther than 2^40 are dropped; MOC_GetDroppedTriangles
  * counts them.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count
- * or, with 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices that
- * are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_INVALID_ENUM, MOC_STATUS_INVALID_SIZE for a negative count or, with
+ * 32-bit pointers, more indices than memory can hold, MOC_STATUS_INVALID_LAYOUT for a negative stride or indices
+ * that are not aligned to 4 bytes, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY while a pool is drawing into the object.
  *
  * Required:
  * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. The indices, the
@@ -1169,12 +1170,13 @@ MOC_Status MOC_RenderTrianglesChecked(MaskedOcclusionCulling *moc,
 /**
  * MOC_RenderTriangles or MOC_RenderTrianglesChecked for a mesh described by a struct.
  *
- * Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too small or
- * a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
+ * Errors: as those; MOC_STATUS_NULL_POINTER for a null `mesh`, MOC_STATUS_INVALID_SIZE for a `size` that is too
+ * small or a `triangle_count` above INT32_MAX, MOC_STATUS_INVALID_ENUM for an `index_size` other than 4 and 0.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be read for
- * the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can be written.
+ * `moc` is null or from MOC_Create and not destroyed; no other thread uses it meanwhile. `mesh` is null or can be
+ * read for the number of bytes given in its `size`, and what it points to as MOC_Mesh says. `result` is null or can
+ * be written.
  */
 MOC_Status MOC_RenderMesh(MaskedOcclusionCulling *moc,
                           const struct MOC_Mesh *mesh,
@@ -1328,21 +1330,21 @@ MOC_Status MOC_ComputePixelDepthBufferChecked(const MaskedOcclusionCulling *moc,
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or can be read
- * and written for the number of bytes given in its `size`.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null, or
+ * can be read and written for the number of bytes given in its `size`.
  */
 MOC_Status MOC_GetStatistics(const MaskedOcclusionCulling *moc,
                              struct MOC_Statistics *out);
 
 /**
- * Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite coordinate, or a
- * distance beyond 2^40. They are counted whether or not the settings ask for statistics.
+ * Writes the number of triangles dropped by draws since the object was created, because of a NaN, an infinite
+ * coordinate, or a distance beyond 2^40. They are counted whether or not the settings ask for statistics.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can be
- * written.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile. `out` is null or can
+ * be written.
  */
 MOC_Status MOC_GetDroppedTriangles(const MaskedOcclusionCulling *moc,
                                    int64_t *out);
@@ -1474,15 +1476,15 @@ MOC_Status MOC_ThreadpoolCreate(uint32_t threads,
                                 struct MOC_Threadpool **out);
 
 /**
- * MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names, and a
- * callback when a thread starts.
+ * MOC_ThreadpoolCreate with more settings: pools whose work is done by the program's own job system, thread names,
+ * and a callback when a thread starts.
  *
- * Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a `size` that is
- * too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
+ * Errors: as MOC_ThreadpoolCreate, and MOC_STATUS_NULL_POINTER for the settings, MOC_STATUS_INVALID_SIZE for a
+ * `size` that is too small, MOC_STATUS_INVALID_ENUM for a `reserved` that is not 0.
  *
  * Required:
- * `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C string, and
- * its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
+ * `settings` is null or can be read for the number of bytes given in its `size`, its `thread_name` is null or a C
+ * string, and its `thread_start` may be called with its `user` by any thread. `out` is null or can be written.
  */
 MOC_Status MOC_ThreadpoolCreateFrom(const struct MOC_ThreadpoolSettings *settings,
                                     struct MOC_Threadpool **out);
@@ -1530,9 +1532,10 @@ MOC_Status MOC_ThreadpoolSuspendThreads(const struct MOC_Threadpool *pool);
 MOC_Status MOC_ThreadpoolFlush(const struct MOC_Threadpool *pool);
 
 /**
- * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system, alongside the
- * pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is pending that is not already
- * being worked on. A piece is one batch of calls to project, or the batches one bin has to draw: usually tens of microseconds.
+ * Does one piece of pending work on the calling thread and returns: for jobs of the program's own job system,
+ * alongside the pool's threads or instead of them. Writes 1 to `worked` (null is allowed), or 0 if nothing is
+ * pending that is not already being worked on. A piece is one batch of calls to project, or the batches one bin has
+ * to draw: usually tens of microseconds.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1543,8 +1546,8 @@ MOC_Status MOC_ThreadpoolWorkOnce(const struct MOC_Threadpool *pool,
                                   int32_t *worked);
 
 /**
- * Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a flush that
- * never sleeps.
+ * Writes 1 if everything submitted is drawn, otherwise 0. Calling MOC_ThreadpoolWorkOnce in a loop until then is a
+ * flush that never sleeps.
  *
  * Errors: MOC_STATUS_NULL_POINTER.
  *
@@ -1578,16 +1581,16 @@ MOC_Status MOC_ThreadpoolGetBins(const struct MOC_Threadpool *pool, uint32_t *bi
  * Makes the pool draw into `moc` from now on (null: into no object), once everything submitted before is drawn. The
  * object keeps its near plane.
  *
- * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any thread, even
- * while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs): they answer from what has
- * been drawn so far. Calls that would change or copy its buffer while work is in flight are refused (MOC_STATUS_BUSY);
- * MOC_Flush waits for the pool.
+ * The object may be destroyed before or after the pool. MOC_TestRect and MOC_TestTriangles may query it on any
+ * thread, even while the pool draws or clears (but not while this function or MOC_ThreadpoolSetResolution runs):
+ * they answer from what has been drawn so far. Calls that would change or copy its buffer while work is in flight
+ * are refused (MOC_STATUS_BUSY); MOC_Flush waits for the pool.
  *
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_BUSY if `moc` belongs to another pool, and nothing is changed.
  *
  * Required:
- * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed; no other
- * thread uses it or the pool's previous object meanwhile.
+ * `pool` is null or from MOC_ThreadpoolCreate and not destroyed. `moc` is null or from MOC_Create and not destroyed;
+ * no other thread uses it or the pool's previous object meanwhile.
  */
 MOC_Status MOC_ThreadpoolSetBuffer(const struct MOC_Threadpool *pool,
                                    MaskedOcclusionCulling *moc);
@@ -1657,8 +1660,8 @@ MOC_Status MOC_ThreadpoolClearBuffer(const struct MOC_Threadpool *pool);
  * Errors: as MOC_RenderTriangles. Triangles dropped later are counted in the object's statistics.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and stay
- * unchanged as those of MOC_ThreadpoolRenderMesh.
+ * As MOC_ThreadpoolWakeThreads. The indices, and every vertex from the lowest to the highest index, can be read and
+ * stay unchanged as those of MOC_ThreadpoolRenderMesh.
  */
 MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
                                          const float *vertices,
@@ -1675,9 +1678,9 @@ MOC_Status MOC_ThreadpoolRenderTriangles(const struct MOC_Threadpool *pool,
  * Errors: as MOC_RenderMesh. Triangles dropped later are counted in the object's statistics.
  *
  * Required:
- * As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what it points to
- * as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush, MOC_ThreadpoolClearBuffer or
- * MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
+ * As MOC_ThreadpoolWakeThreads. `mesh` is null or can be read for the number of bytes given in its `size`, and what
+ * it points to as MOC_Mesh says. The vertices and indices stay unchanged until MOC_ThreadpoolFlush,
+ * MOC_ThreadpoolClearBuffer or MOC_ThreadpoolSetNearClipPlane returns, or `max_jobs` later calls do.
  */
 MOC_Status MOC_ThreadpoolRenderMesh(const struct MOC_Threadpool *pool,
                                     const struct MOC_Mesh *mesh);
@@ -1758,12 +1761,12 @@ MOC_Status MOC_ThreadpoolMergeBuffers(const struct MOC_Threadpool *pool,
  * Changing the near plane or the resolution ends a recording that already contains a call. Merges and triangle lists
  * are not recorded.
  *
- * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE if the
- * file cannot be created, or on Windows if `path` is not UTF-8.
+ * Errors: MOC_STATUS_NULL_POINTER, MOC_STATUS_NO_BUFFER, MOC_STATUS_BUSY if it is already recording, MOC_STATUS_FILE
+ * if the file cannot be created, or on Windows if `path` is not UTF-8.
  *
  * Required:
- * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or ends with
- * a zero.
+ * `moc` is null or from MOC_Create and not destroyed, and no other thread changes it meanwhile; `path` is null or
+ * ends with a zero.
  */
 MOC_Status MOC_RecorderStart(const MaskedOcclusionCulling *moc,
                              const char *path);
@@ -1848,7 +1851,8 @@ MOC_Status MOC_RecordingDestroy(struct MOC_Recording *recording);
  * Errors: MOC_STATUS_NULL_POINTER; MOC_STATUS_INVALID_SIZE for a `size` that is too small, and nothing is written.
  *
  * Required:
- * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
+ * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its
+ * `size`.
  */
 MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording,
                                 struct MOC_RecordingInfo *out);
@@ -1862,7 +1866,8 @@ MOC_Status MOC_RecordingGetInfo(const struct MOC_Recording *recording,
  * small; nothing is written.
  *
  * Required:
- * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its `size`.
+ * `recording` is null or a live one. `out` is null, or can be read and written for the number of bytes given in its
+ * `size`.
  */
 MOC_Status MOC_RecordingGetCall(const struct MOC_Recording *recording,
                                 uint32_t index,
