@@ -91,6 +91,10 @@ pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], scree
         [0.0, -1.0, high, 0.0],
     ];
     for plane in planes {
+        // Most triangles cross one plane only.
+        if corners[..len].iter().all(|v| distance(plane, v) >= 0.0) {
+            continue;
+        }
         (corners, len) = against(plane, &corners, len);
         if plane == planes[0] {
             // On the near plane w is known; after rounding it might be zero.
@@ -115,9 +119,13 @@ pub(crate) fn triangle<C: Coverage>(camera: &Camera, clip: &[[f32; 3]; 3], scree
     Clipped::Polygon(polygon)
 }
 
+/// Not negative inside of the plane.
+fn distance([a, b, c, d]: [f64; 4], v: &Vertex) -> f64 {
+    a * v.clip[0] + b * v.clip[1] + c * v.clip[2] + d
+}
+
 /// Clips against one plane. A convex polygon gains at most one corner.
-fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize) -> ([Vertex; MAX_VERTICES], usize) {
-    let distance = |v: &Vertex| a * v.clip[0] + b * v.clip[1] + c * v.clip[2] + d;
+fn against(plane: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize) -> ([Vertex; MAX_VERTICES], usize) {
     let mut out = [NO_VERTEX; MAX_VERTICES];
     let mut n = 0;
     let mut push = |v: Vertex| {
@@ -130,7 +138,7 @@ fn against([a, b, c, d]: [f64; 4], corners: &[Vertex; MAX_VERTICES], len: usize)
     };
     for k in 0..len {
         let (from, to) = (&corners[k], &corners[if k + 1 < len { k + 1 } else { 0 }]);
-        let (at_from, at_to) = (distance(from), distance(to));
+        let (at_from, at_to) = (distance(plane, from), distance(plane, to));
         if at_from >= 0.0 {
             push(*from);
         }

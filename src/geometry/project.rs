@@ -66,6 +66,10 @@ pub(crate) fn project<S: Simd>(s: S, camera: &Camera, clip: [S::F; 3]) -> [S::F;
 /// As [`project`], and says whether any is marked.
 #[inline(always)]
 pub(crate) fn project_or_mark<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> Projected<S> {
+    // Meshes behind the eye need no division.
+    if s.all(s.lt(w, s.f(camera.near))) {
+        return Projected::Marked([s.float_of_bits(marks(s, camera, [x, y, w])), s.f(0.0), s.f(0.0)]);
+    }
     let z = s.div(s.f(1.0), w);
     let across = s.mul(s.mul(x, z), s.f(camera.half_width));
     let down = s.mul(s.mul(y, z), s.f(camera.row_scale));
@@ -77,6 +81,13 @@ pub(crate) fn project_or_mark<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 
     if s.all(regular) {
         return Projected::Regular([column, row, z]);
     }
+    let x = s.select(regular, column, s.float_of_bits(marks(s, camera, [x, y, w])));
+    Projected::Marked([x, s.select(regular, row, s.f(0.0)), z])
+}
+
+/// What takes the place of x in vertices that need clipping.
+#[inline(always)]
+fn marks<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 3]) -> S::I {
     let minus_w = s.sub(s.f(0.0), w);
     let mut marks = s.or(bit_where(s, s.lt(w, s.f(camera.near)), outcode::NEAR), s.i(outcode::MARK as i32));
     marks = s.or(marks, s.or(bit_where(s, s.lt(x, minus_w), outcode::LEFT), bit_where(s, s.lt(w, x), outcode::RIGHT)));
@@ -84,9 +95,7 @@ pub(crate) fn project_or_mark<S: Simd>(s: S, camera: &Camera, [x, y, w]: [S::F; 
     // Values that are not finite are outside no plane: clipping then counts them as dropped or as visible.
     let largest = s.max(s.max(s.abs(x), s.abs(y)), s.abs(w));
     let finite = s.and_m(s.le(largest, s.f(f32::MAX)), s.and_m(s.eq(x, x), s.eq(y, y)));
-    marks = s.select_i(finite, marks, s.i(outcode::MARK as i32));
-    let x = s.select(regular, column, s.float_of_bits(marks));
-    Projected::Marked([x, s.select(regular, row, s.f(0.0)), z])
+    s.select_i(finite, marks, s.i(outcode::MARK as i32))
 }
 
 /// A bit in the lanes of a mask.
