@@ -6,6 +6,7 @@
 
 use core::marker::PhantomData;
 
+use crate::buffer::hiz::row_is_open;
 use crate::buffer::pixels::shows;
 use crate::buffer::rules::{Rule, with_rule};
 use crate::buffer::{Buffer, CLEARED, TILE_HEIGHT, TILE_WIDTH, TileRect};
@@ -259,26 +260,15 @@ impl<R: Rule> Layers<'_, R> {
         let lanes = S::LANES as u32;
         let (first, end) = (tiles.x0, tiles.x1);
         for y in tiles.y0..tiles.y1 {
-            // Lanes whose tile does not hide the rectangle by its `z_min`.
-            let open_from = |x: u32| {
-                // SAFETY: the caller's contract; after the last tile there is room for a vector.
-                let z_min = unsafe { s.load_f(buffer.z_min_of(x, y)) };
-                s.le(z_min, depth)
-            };
-            // One branch per row, because most rows have no such tile.
-            let mut x = first;
-            let mut any = s.first(0);
-            while x + lanes <= end {
-                any = s.or_m(any, open_from(x));
-                x += lanes;
-            }
-            any = s.or_m(any, s.and_m(s.first((end - x) as usize), open_from(x)));
-            if s.mask_bits(any) == 0 {
+            // SAFETY: the caller's contract.
+            if !unsafe { row_is_open(s, buffer, first, end, y, depth) } {
                 continue;
             }
             let mut x = first;
             while x < end {
-                let open = s.mask_bits(s.and_m(s.first((end - x) as usize), open_from(x)));
+                // SAFETY: the caller's contract; after the last tile there is room for a vector.
+                let z_min = unsafe { s.load_f(buffer.z_min_of(x, y)) };
+                let open = s.mask_bits(s.and_m(s.first((end - x) as usize), s.le(z_min, depth)));
                 // SAFETY: as above; all bits refer to this row.
                 if unsafe { self.sees_open::<S, { u32::BITS }>(s, (x, y), open, looked) } {
                     return true;

@@ -22,6 +22,24 @@ pub(super) fn counts(tiles_w: u32, tiles_h: u32) -> (u32, u32) {
     (tiles_w.div_ceil(COARSE_TILES_W), tiles_h.div_ceil(COARSE_TILES_H))
 }
 
+/// Does any tile of a row of tiles leave visible what is at `depth` and touches it? The columns begin at `x` and end
+/// before `end`. One branch for the whole row, because most rows have no such tile.
+///
+/// # Safety
+/// They are tiles of the buffer, and nobody is drawing.
+#[inline(always)]
+pub(crate) unsafe fn row_is_open<S: Simd>(s: S, buffer: &Buffer, mut x: u32, end: u32, y: u32, depth: S::F) -> bool {
+    // SAFETY: the caller's contract; after the last tile there is room for a vector.
+    let open_from = |x: u32| s.le(unsafe { s.load_f(buffer.z_min_of(x, y)) }, depth);
+    let mut any = s.first(0);
+    while x + S::LANES as u32 <= end {
+        any = s.or_m(any, open_from(x));
+        x += S::LANES as u32;
+    }
+    any = s.or_m(any, s.and_m(s.first((end - x) as usize), open_from(x)));
+    s.mask_bits(any) != 0
+}
+
 /// Marks the cells of a rectangle of tiles as cleared.
 ///
 /// # Safety

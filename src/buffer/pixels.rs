@@ -27,22 +27,29 @@ fn write_layers<R: Rule>(buffer: &Buffer, depth: &mut [f32], flip_y: bool) {
                 pixels.fill(NOTHING);
                 continue;
             }
-            // SAFETY: the tile has been drawn into, so its planes were written; there are as many as its rule says, and
-            // `lane` is one of its sub-tiles.
-            let word = |plane: usize| unsafe { *buffer.tile(x, y).add(plane * BLOCK + lane) };
-            let z0 = f32::from_bits(word(0));
-            for (x, pixel) in pixels.iter_mut().enumerate() {
-                let bit = 1 << (row % 4 * 8 + x);
-                let mut z = z0;
-                for &(mask, z_layer) in R::LAYER_PLANES {
-                    if word(mask) & bit != 0 {
-                        z = z.max(f32::from_bits(word(z_layer)));
-                    }
-                }
+            for (x_in, pixel) in pixels.iter_mut().enumerate() {
+                // SAFETY: the tile has been drawn into, and `lane` is one of its sub-tiles.
+                let z = unsafe { bound::<R>(buffer.tile(x, y), lane, 1 << (row % 4 * 8 + x_in)) };
                 *pixel = if z > 0.0 { z } else { NOTHING };
             }
         }
     }
+}
+
+/// No pixel of a sub-tile, given by its bit, is farther than this.
+///
+/// # Safety
+/// These are a tile's planes, which the rule `R` wrote; `lane` is one of its sub-tiles.
+#[inline(always)]
+unsafe fn bound<R: Rule>(planes: *const u32, lane: usize, bit: u32) -> f32 {
+    // SAFETY: the caller's contract: there are as many planes as the rule says.
+    let word = |plane: usize| unsafe { *planes.add(plane * BLOCK + lane) };
+    let mut bound = f32::from_bits(word(0));
+    for &(mask, z_layer) in R::LAYER_PLANES {
+        let z = if word(mask) & bit != 0 { f32::from_bits(word(z_layer)) } else { 0.0 };
+        bound = if z > bound { z } else { bound };
+    }
+    bound
 }
 
 /// Is anything that touches this pixel at `depth`, or nearer, visible as far as the buffer can tell? What it says is what
@@ -69,12 +76,6 @@ unsafe fn shows_in_layers<R: Rule>(buffer: &Buffer, column: u32, row: u32, depth
     if unsafe { *buffer.z_min_of(x, y) } == CLEARED {
         return true;
     }
-    let planes = buffer.tile(x, y);
-    // SAFETY: as in `write_layers`.
-    let word = |plane: usize| unsafe { *planes.add(plane * BLOCK + lane) };
-    let mut hidden = depth < f32::from_bits(word(0));
-    for &(mask, z) in R::LAYER_PLANES {
-        hidden |= (word(mask) & bit != 0) & (depth < f32::from_bits(word(z)));
-    }
-    !hidden
+    // SAFETY: the tile has been drawn into, and `lane` is one of its sub-tiles.
+    unsafe { bound::<R>(buffer.tile(x, y), lane, bit) <= depth }
 }

@@ -1,5 +1,5 @@
-//! Why a call was refused: the status that it returns and, for the message callback, the argument and what is wrong
-//! with it.
+//! Why a call was refused: the status that it returns, and the text that the message callback receives, which names the
+//! argument and says what is wrong with it.
 
 use super::status::{self, MOC_Status};
 use crate::Error;

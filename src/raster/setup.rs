@@ -45,10 +45,10 @@ const MARGIN: f32 = 16.0 / (1 << 24) as f32;
 const FINE_MARGIN: f32 = 1.0 / (1_u64 << 40) as f32;
 
 /// The result of set-up, a bit per lane.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(crate) struct Alive {
-    /// Front-facing triangles whose bounds hold a pixel; all others are ignored. None if all are hidden and a draw skips
-    /// those.
+    /// Front-facing triangles whose bounds hold a pixel; all others are ignored. If all are hidden and those are
+    /// skipped, they may face either way.
     pub rasterized: u32,
     /// Those of them that the HiZ does not hide.
     pub lanes: u32,
@@ -155,7 +155,7 @@ pub(crate) fn set_up<S: Simd, C: Coverage>(
     let hidden = s.mask_bits(unsafe { hiz_test::hidden::<S, C, false>(s, buffer, scope, &bounds) });
     let inside = s.mask_bits(s.and_m(active, bounds.inside));
     if skip_hidden && inside & !hidden == 0 {
-        return Alive { rasterized: if C::NEEDS_CENTRE { 0 } else { inside }, lanes: 0 };
+        return Alive { rasterized: inside, lanes: 0 };
     }
     let oriented = Oriented::new(s, both_sides, corners);
     let (rasterized, wide) = oriented.facing::<C, false>(s, &bounds, active, batch);

@@ -57,6 +57,7 @@ pub(crate) struct Input<'a> {
 /// `op`. The clip lies within the buffer, and `op` may be applied to any of its tiles.
 #[inline(always)]
 pub(crate) unsafe fn traverse<T: Simd, O: TileOp<T>>(t: T, input: Input<'_>, op: &mut O) -> Option<u32> {
+    const { assert!(AHEAD < T::LANES) }
     let Input { buffer, clip, batch, alive, lists } = input;
     // SAFETY: every field is `MaybeUninit`, or an array of them.
     let Workspace { tile_rows, rows } = unsafe { lists.assume_init_mut() };

@@ -5,10 +5,9 @@
 //! entries    each begins with a byte that gives its kind
 //!   3        clear: nothing else
 //!   1        rectangle: i32 result, f32 x_min, y_min, x_max, y_max, w_min
-//!   0, 2     draw, query: i32 result, i32 vertices (0: the entry ends here), i32 bytes per vertex, the vertices from the
-//!            lowest used index on, i32 triangles, 3 u32 per triangle, less that lowest index, u8 has a matrix, [16
-//!            f32],
-//!            i32 clip planes, i32 winding, 3 i32 layout
+//!   0, 2     draw, query: i32 result, i32 vertices (0: the entry ends here), i32 bytes per vertex, the vertices from
+//!            the lowest used index on, i32 triangles, 3 u32 per triangle, less that lowest index, u8 has a matrix,
+//!            [16 f32], i32 clip planes, i32 winding, 3 i32 layout
 //! end        0x7F
 //! ```
 //!

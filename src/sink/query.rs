@@ -64,8 +64,8 @@ impl TriangleSink for Query<'_> {
         if self.buffer.statistics() || self.pixel(corner).is_none() {
             return false;
         }
-        // SAFETY: nobody is drawing, or the answer is discarded.
-        if !unsafe { whole_mesh::is_hidden::<S, Conservative>(s, self.buffer, vertices) } {
+        // SAFETY: the corner is a vertex. Nobody is drawing, or the answer is discarded.
+        if !unsafe { whole_mesh::is_hidden(s, self.buffer, vertices) } {
             return false;
         }
         self.found = true;
@@ -88,18 +88,18 @@ impl TriangleSink for Query<'_> {
         if alive.rasterized == 0 {
             return true;
         }
-        if alive.lanes == 0 && !counts {
-            self.found = true;
-            tally.rasterized += u64::from(alive.rasterized.count_ones());
-            return true;
-        }
         let (t, buffer, batch, lists) = (setup.s, self.buffer, &memory.batch, &mut memory.own);
         let clip = scope.clip;
-        let input = Input { buffer, clip, batch, alive, lists };
-        let (stopped, touches) = with_rule!(buffer.rule(), R => {
-            t.outlined(CompareTiles { input, op: Compare::<R>::new(buffer) })
-        });
-        self.found |= touches || alive.rasterized != alive.lanes;
+        let mut stopped = None;
+        if alive.lanes != 0 {
+            let input = Input { buffer, clip, batch, alive, lists };
+            let touches;
+            (stopped, touches) = with_rule!(buffer.rule(), R => {
+                t.outlined(CompareTiles { input, op: Compare::<R>::new(buffer) })
+            });
+            self.found |= touches;
+        }
+        self.found |= alive.rasterized != alive.lanes;
         if !self.found && stopped.is_none() {
             // Either hidden tile by tile or touching no pixel: the first touched pixel decides. Which tiles are
             // compared together depends on the instruction set, so being hidden there must not decide it.
@@ -109,7 +109,7 @@ impl TriangleSink for Query<'_> {
         // Triangles after the first one that may be visible do not count, however many a vector holds.
         let counted = alive.rasterized & stopped.map_or(u32::MAX, |lane| (2 << lane) - 1);
         tally.rasterized += u64::from(counted.count_ones());
-        if buffer.statistics() {
+        if counts {
             // SAFETY: some triangles are rasterized, so set-up stored the batch.
             tally.traversed += unsafe { tiles_in(batch, counted, clip) };
         }

@@ -56,20 +56,18 @@ impl<R: Rule> Job for Sequence<'_, R> {
                     let (mask, depth) =
                         (s.load_i(step.mask.as_ptr().add(first)), s.load_f(step.depth.as_ptr().add(first)));
                     let mut planes = R::load(s, p);
-                    if s.all(s.eq_i(mask, s.i(-1))) {
-                        let (mut all, mut other) = (Memory(memory.0), Memory(memory.0));
-                        let mut with_all = R::load(s, p);
-                        let seen = R::insert_all(s, &mut with_all, depth);
-                        R::store(s, all.0.as_mut_ptr().add(first), &with_all);
-                        let mut with_mask = R::load(s, p);
-                        let expected = R::insert(s, &mut with_mask, mask, depth);
-                        R::store(s, other.0.as_mut_ptr().add(first), &with_mask);
-                        assert_eq!(all.0[..R::PLANES * BLOCK], other.0[..R::PLANES * BLOCK], "insert_all is insert");
-                        assert_eq!(s.mask_bits(seen.live), s.mask_bits(expected.live));
-                        assert_eq!(s.mask_bits(seen.merged), s.mask_bits(expected.merged));
-                    }
+                    let mut all = Memory(memory.0);
                     let inserted = R::insert(s, &mut planes, mask, depth);
                     R::store(s, p, &planes);
+                    if s.all(s.eq_i(mask, s.i(-1))) {
+                        let p = all.0.as_mut_ptr().add(first);
+                        let mut planes = R::load(s, p);
+                        let seen = R::insert_all(s, &mut planes, depth);
+                        R::store(s, p, &planes);
+                        assert_eq!(all.0[..R::PLANES * BLOCK], memory.0[..R::PLANES * BLOCK], "insert_all is insert");
+                        assert_eq!(s.mask_bits(seen.live), s.mask_bits(inserted.live));
+                        assert_eq!(s.mask_bits(seen.merged), s.mask_bits(inserted.merged));
+                    }
                     let (touched, asked) =
                         (s.load_i(step.touched.as_ptr().add(first)), s.load_f(step.asked.as_ptr().add(first)));
                     let planes = R::load(s, memory.0.as_ptr().add(first));

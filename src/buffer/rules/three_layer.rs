@@ -74,8 +74,8 @@ impl Rule for ThreeLayer {
         let full = s.i(-1);
         let full_c = s.eq_i(mask_c, full);
         let drop_c = s.or_m(full_c, s.le(loss_c, s.min(s.min(loss_a, z0), loss_b)));
-        // Against B, the loss of A counts as at most a third of A's depth: where B is far in front of C, its pixels would
-        // lose most of theirs.
+        // Against B, the loss of A counts as at most a third of A's depth. Otherwise B would too often be merged into a C
+        // far behind it, and its pixels would lose most of their depth.
         let limited_a = s.min(loss_a, s.mul(z_a, s.f(1.0 / 3.0)));
         let drop_a = s.and_not_m(drop_c, s.le(limited_a, loss_b));
         // The nearest full layer: if a layer is full, so are those behind it.
